@@ -87,8 +87,9 @@ pub trait OutputJacobian: Coderivative {
     /// c(S(α)), m entries.
     fn outputs(&self, state: &Self::State) -> Vector;
 
-    /// y* = (∂c/∂y)ᵀ w, in the layout of the solver's dual: what the coderivative is asked for.
-    fn output_dual(&self, state: &Self::State, weights: &Vector) -> Vector;
+    /// The derivatives of w·c: by the state, y* = (∂c/∂y)ᵀ w in the layout of the solver's dual, what the coderivative
+    /// is asked for; and by the control at a fixed state, where outputs depend on it, else 0.
+    fn output_dual(&self, control: &Vector, state: &Self::State, weights: &Vector) -> CostGradient;
 
     /// Outputs and G, to a relative accuracy of its columns. The default takes one coderivative per output, which is
     /// exact and right for few outputs; a solver that has forward derivatives should use them where there are fewer
@@ -106,8 +107,9 @@ pub trait OutputJacobian: Coderivative {
         let mut jacobian = Matrix::zeros(outputs.len(), control.len());
         for row in 0..outputs.len() {
             let unit = Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == row)));
-            let sensitivity = self.coderivative(control, state, &self.output_dual(state, &unit))?;
-            jacobian.set_row(row, &sensitivity.element.transpose());
+            let dual = self.output_dual(control, state, &unit);
+            let sensitivity = self.coderivative(control, state, &dual.state)?;
+            jacobian.set_row(row, &(dual.control + sensitivity.element).transpose());
         }
         Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None })
     }
@@ -143,9 +145,10 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
         self.cost.value(&self.solver.outputs(state))
     }
 
-    /// y* = (∂c/∂y)ᵀ w with w ∈ ∂h(c), at a state already found: what the coderivative is asked for.
-    pub fn state_dual(&self, state: &S::State) -> Vector {
-        self.solver.output_dual(state, &self.cost.subgradient(&self.solver.outputs(state)))
+    /// The derivatives of w·c with w ∈ ∂h(c), at a state already found: by the control, and y* = (∂c/∂y)ᵀ w, what the
+    /// coderivative is asked for.
+    pub fn cost_gradient(&self, control: &Vector, state: &S::State) -> CostGradient {
+        self.solver.output_dual(control, state, &self.cost.subgradient(&self.solver.outputs(state)))
     }
 
     /// Θ and one subgradient at a state already found.
@@ -155,10 +158,7 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
     /// not finite.
     pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
         check_finite("outputs", self.solver.outputs(state).as_slice())?;
-        chain_rule(&self.solver, control, state, self.value(state), || CostGradient {
-            control: Vector::zeros(control.len()),
-            state: self.state_dual(state),
-        })
+        chain_rule(&self.solver, control, state, self.value(state), || self.cost_gradient(control, state))
     }
 
     /// The constraints at a state whose Jacobian is not known, by one coderivative for each.
@@ -169,8 +169,8 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
         }
         let pieces = self.cost.constraint_pieces(&self.solver.outputs(state));
         let gradient = |weights: &Vector| {
-            let dual = self.solver.output_dual(state, weights);
-            Ok(self.solver.coderivative(control, state, &dual)?.element)
+            let dual = self.solver.output_dual(control, state, weights);
+            Ok(dual.control + self.solver.coderivative(control, state, &dual.state)?.element)
         };
         ConstraintEvaluation::of_pieces((count, control.len()), &pieces, gradient, false).map(Some)
     }

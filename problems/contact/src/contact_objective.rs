@@ -5,16 +5,17 @@ pub use crate::cost::PressureRoot;
 use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
 use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
+use crate::body::mesh::smallest_extent;
 use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
-    Answer, CompositeObjective, ConstraintKind, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError,
+    Answer, CompositeObjective, ConstraintKind, Cost, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError,
     OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
 };
 
-/// Least first step over the smallest edge of the body. Ten times as much costs evaluations on flat bodies.
+/// Least first step over the smallest extent of the body. Ten times as much costs evaluations on flat bodies.
 const LEAST_FIRST_STEP: f64 = 1e-3;
-/// Largest first step over the smallest edge of the body: bodies close larger gaps by moving as a whole, which says
+/// Largest first step over the smallest extent of the body: bodies close larger gaps by moving as a whole, which says
 /// nothing about their shape.
 const LARGEST_FIRST_STEP: f64 = 0.5;
 
@@ -45,10 +46,10 @@ impl ContactCost {
     pub fn new(measure: Measure, problem: &ContactProblem) -> Result<Self, SceneError> {
         Ok(match measure {
             Measure::Pressure(measure) => {
-                Self::Pressure(PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene))
+                Self::Pressure(PressureCost::new(measure, problem)?.normalised_for(problem))
             }
             Measure::LimitedPressure(measure, limit) => {
-                let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene);
+                let cost = PressureCost::new(measure, problem)?.normalised_for(problem);
                 Self::Pressure(cost.limited(limit)?)
             }
             Measure::Field(measure) => Self::Field(FieldCost::new(measure, problem)?),
@@ -63,7 +64,9 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// As [`ContactCost::new`].
     pub fn new(shape: ContactShape<S>, measure: Measure) -> Result<Self, SceneError> {
         Ok(match ContactCost::new(measure, shape.problem())? {
-            ContactCost::Pressure(cost) => Self::Pressure(CompositeObjective::new(shape, cost)),
+            ContactCost::Pressure(cost) => {
+                Self::Pressure(CompositeObjective::new(shape.with_outputs(cost.outputs()), cost))
+            }
             ContactCost::Field(cost) => Self::Field(ReducedObjective::new(shape.with_displacements(), cost)),
         })
     }
@@ -84,11 +87,12 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// y*, the gradient of the cost by a state at fixed controls: what the coderivative is asked for.
-    pub fn state_dual(&self, control: &Vector, state: &ContactState<S::State>) -> Vector {
+    /// The gradients of the cost by the controls at a fixed state, and by the state at fixed controls, y*: what the
+    /// coderivative is asked for.
+    pub fn cost_gradient(&self, control: &Vector, state: &ContactState<S::State>) -> CostGradient {
         match self {
-            Self::Pressure(objective) => objective.state_dual(state),
-            Self::Field(objective) => objective.cost().gradient(control, state).state,
+            Self::Pressure(objective) => objective.cost_gradient(control, state),
+            Self::Field(objective) => objective.cost().gradient(control, state),
         }
     }
 
@@ -107,27 +111,35 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// The derivative of Θ by the height of every contact node at a state already found, unit of Θ per mm.
+    /// The derivative of Θ by the position of every node of the lower body along the axes at a state already found, unit
+    /// of Θ per mm; 0 for nodes that no control moves.
     ///
     /// # Errors
-    /// As [`ContactShape::height_sensitivity`].
-    pub fn height_sensitivity(
+    /// As [`ContactShape::position_sensitivity`].
+    pub fn position_sensitivity(
         &self,
         control: &Vector,
         state: &ContactState<S::State>,
-    ) -> Result<Vec<f64>, OracleError> {
-        let mut heights = self.solver().height_sensitivity(state, &self.state_dual(control, state))?.0;
-        // At fixed displacements, costs of the pressures do not depend on the shape.
-        if let (Self::Field(objective), Some(bodies)) = (self, &state.bodies) {
-            let direct = objective.cost().gradient_of(bodies).heights;
-            heights.iter_mut().zip(direct).for_each(|(height, direct)| *height += direct);
+    ) -> Result<Vec<[f64; 3]>, OracleError> {
+        let dual = self.cost_gradient(control, state).state;
+        let mut positions = self.solver().position_sensitivity(state, &dual)?.0;
+        let explicit = match (self, &state.bodies) {
+            (Self::Field(objective), Some(bodies)) => objective.cost().gradient_of(bodies).positions,
+            (Self::Field(_), None) => return Ok(positions),
+            (Self::Pressure(objective), _) => {
+                let weights = objective.cost().subgradient(&self.solver().outputs(state));
+                self.solver().output_position_gradient(control, state, &weights)
+            }
+        };
+        for (sum, explicit) in positions.iter_mut().zip(explicit) {
+            (0..3).for_each(|axis| sum[axis] += explicit[axis]);
         }
-        Ok(heights)
+        Ok(positions)
     }
 
     /// σ per contact node, MPa.
     pub fn pressures(&self, state: &ContactState<S::State>) -> Vec<f64> {
-        self.solver().outputs(state).as_slice().to_vec()
+        state.rows.pressures(&state.forces.normal)
     }
 
     /// The wanted pressure per contact node, MPa, where the deviation from it is minimised.
@@ -146,11 +158,14 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements.
+    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements, and
+    /// where normals or areas change with the shape.
     pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
         match self {
-            Self::Pressure(objective) => Some(objective.cost().lower_bound(total_force)),
-            Self::Field(_) => None,
+            Self::Pressure(objective) if self.solver().problem().geometry.is_fixed() => {
+                objective.cost().lower_bound(total_force)
+            }
+            Self::Pressure(_) | Self::Field(_) => None,
         }
     }
 
@@ -203,15 +218,29 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// Half of the mean distance between a surface and its counterpart, the length on which contact changes, but at
-    /// least a thousandth and at most half of the smallest edge of the body, mm: bodies that touch everywhere have no
+    /// least a thousandth and at most half of the smallest extent of the body, mm: bodies that touch everywhere have no
     /// distance, and deform.
     pub fn first_step(&self, start: &Vector) -> f64 {
         let problem = self.solver().problem();
-        let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
-        let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
-        let [first, second] = problem.grid.size;
-        let edge = first.min(second).min(start.mean().abs());
-        length.max(LEAST_FIRST_STEP * edge).min(LARGEST_FIRST_STEP * edge)
+        let positions = problem.positions(start.as_slice());
+        let rows = positions.as_ref().ok().and_then(|positions| problem.rows(positions).ok());
+        let gaps = rows.iter().flat_map(|rows| rows.gaps());
+        let (sum, count) = gaps.fold((0.0, 0), |(sum, count), gap| (sum + gap.abs(), count + 1));
+        let length = sum / (2 * count.max(1)) as f64;
+        let extent = smallest_extent(&problem.map.positions(start.as_slice()));
+        length.max(LEAST_FIRST_STEP * extent).min(LARGEST_FIRST_STEP * extent)
+    }
+
+    /// Coordinates of the controls for the optimizer. For heights, a change of their mean by the height itself is as long
+    /// in them as a change of shape by the first step: bodies that contact holds follow the surface as a whole, so that Θ
+    /// hardly depends on its mean height. Other controls are their own coordinates.
+    ///
+    /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
+    pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
+        let count = start.len();
+        let is_height = self.solver().problem().scene.heights().is_some();
+        let stretch = if is_height { (start.mean().abs() / first_step).max(1.0) } else { 1.0 };
+        Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
     }
 }
 
@@ -242,14 +271,4 @@ impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
             Self::Field(objective) => objective.evaluate(request),
         }
     }
-}
-
-/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first
-/// step: bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
-///
-/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
-pub fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
-    let count = start.len();
-    let stretch = (start.mean().abs() / first_step).max(1.0);
-    Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
 }

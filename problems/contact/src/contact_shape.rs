@@ -1,14 +1,15 @@
-//! [`ContactShape`]: control heights ↦ contact forces, as a state problem of the framework.
+//! [`ContactShape`]: controls ↦ contact forces, as a state problem of the framework.
 //!
 //! ```text
-//! S: α ↦ y = (λ_N; λ_T; u),    D*S(α)(y*):  one adjoint solve + one pass over the elements          method.md (5.1)
+//! S: α ↦ y = (λ; u),    D*S(α)(y*):  one adjoint solve + one pass over the elements          method.md (5.1)
 //! ```
 //! Contact solvers use no trait of the framework: this module and [`crate::cost`] implement them. A dual of the state
-//! has one entry per normal force, then, with friction, two per node for the tangential forces
-//! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries). A cost of the displacements adds three entries
-//! per node of every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them out, and
-//! nothing is computed for them.
+//! has one entry per contact row, node by node: the normal row, then the tangential ones
+//! ([`ContactBoundary::row_count`](crate::equilibrium::ContactBoundary) entries). A cost of the displacements adds
+//! three entries per node of every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them
+//! out, and nothing is computed for them.
 
+use crate::cost::PressureOutputs;
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, ValueError,
 };
@@ -20,7 +21,7 @@ use crate::solvers::{Processes, SolverPlan};
 use nonsmooth::composite::{InactiveConstraints, Linearization};
 use nonsmooth::interruption::interrupted;
 use nonsmooth::{
-    Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver, Vector,
+    Accuracy, Coderivative, CostGradient, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver, Vector,
 };
 use std::sync::atomic::Ordering;
 
@@ -36,6 +37,7 @@ pub struct ContactShape<S: ContactSolver = AnySolver> {
     solver: S,
     /// Whether states hold the displacements of all bodies.
     displacements: bool,
+    outputs: PressureOutputs,
 }
 
 /// Share of a state's products that its checks may take.
@@ -64,13 +66,20 @@ impl ContactShape {
 impl<S: ContactSolver> ContactShape<S> {
     /// The map by a given solver.
     pub fn by(solver: S) -> Self {
-        Self { solver, displacements: false }
+        Self { solver, displacements: false, outputs: PressureOutputs::default() }
     }
 
     /// Lets the states hold the displacements of all bodies as well: for costs of the displacements.
     #[must_use]
     pub fn with_displacements(self) -> Self {
         Self { displacements: true, ..self }
+    }
+
+    /// Replaces the outputs, which are the contact pressures: where the areas of contact nodes change with the shape, a
+    /// cost is a function of [outputs of its own](crate::cost::PressureCost::outputs).
+    #[must_use]
+    pub fn with_outputs(self, outputs: PressureOutputs) -> Self {
+        Self { outputs, ..self }
     }
 
     /// The contact solver behind the map.
@@ -85,7 +94,7 @@ impl<S: ContactSolver> ContactShape<S> {
 
     /// The controls the scene starts from.
     pub fn start(&self) -> Vector {
-        Vector::from_element(self.control_dimension(), self.problem().scene.start_height)
+        Vector::from_vec(self.problem().scene.shape.start())
     }
 
     /// Contraction and condition at a solved shape; see [`Diagnosis`].
@@ -108,14 +117,14 @@ impl<S: ContactSolver> ContactShape<S> {
         let bodies = self.bodies(state)?;
         let force_rounding = self.solver.force_rounding(&state.solution).map_err(oracle)?;
         let estimates = Estimates { contraction: contraction.unwrap_or(0.0), force_rounding };
-        Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, estimates))
+        Ok(plausibility::warnings(self.problem(), &bodies, (&state.rows, &state.forces), estimates))
     }
 
     /// What this scene did not need, in words.
     pub fn left_out(&self) -> Vec<&'static str> {
         let scene = &self.problem().scene;
         let mut left_out = Vec::new();
-        if scene.friction == 0.0 {
+        if !self.problem().boundary.has_friction() {
             left_out.push("tangential multipliers (no friction)");
             left_out.push("nonsymmetric adjoint (no friction)");
         }
@@ -142,33 +151,28 @@ impl<S: ContactSolver> ContactShape<S> {
         direction: &Vector,
     ) -> Result<(Vector, ValueError), OracleError> {
         self.check_dimension(control)?;
-        let (heights, error) = self.height_sensitivity(state, direction)?;
-        Ok((Vector::from_vec(self.problem().height_map.pull_back(&heights)), error))
+        let (positions, error) = self.position_sensitivity(state, direction)?;
+        Ok((Vector::from_vec(self.problem().map.pull_back(&positions)), error))
     }
 
-    /// As [`ContactShape::pull_back`], for the heights of the contact nodes instead of the controls: with y* = ∂J/∂y of
-    /// a cost, ∂J/∂(height) per contact node, unit of J per mm. A shape may move every node on its own here; the
-    /// controls move them together.
+    /// As [`ContactShape::pull_back`], for the positions of the nodes of the lower body instead of the controls: with
+    /// y* = ∂J/∂y of a cost, ∂J/∂x per node and component, unit of J per mm; 0 for nodes that no control moves.
     ///
     /// # Errors
     /// As [`ContactShape::pull_back`].
-    pub fn height_sensitivity(
+    pub fn position_sensitivity(
         &self,
         state: &ContactState<S::State>,
         direction: &Vector,
-    ) -> Result<(Vec<f64>, ValueError), OracleError> {
-        let (boundary, displacements) = (&self.problem().boundary, self.problem().displacement_count());
-        let (expected, found) = (boundary.dual_dimension(), direction.len());
-        if found != expected && found != expected + displacements {
+    ) -> Result<(Vec<[f64; 3]>, ValueError), OracleError> {
+        let (expected, found) = (self.problem().boundary.row_count, direction.len());
+        if found != expected && found != expected + self.problem().displacement_count() {
             return Err(InputError::Dimension { what: "dual of the contact state", expected, found }.into());
         }
-        let (forces, displacements) = direction.as_slice().split_at(expected);
-        let mut packed = boundary.pack(forces);
-        packed.extend_from_slice(displacements);
         let tolerance = (ADJOINT_SHARE * state.forces.residuals.newton).clamp(TIGHTEST_ADJOINT, 1e-3);
-        let result = self.solver.sensitivities(&state.solution, &packed, tolerance).map_err(oracle)?;
+        let result = self.solver.sensitivities(&state.solution, direction.as_slice(), tolerance).map_err(oracle)?;
         state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
-        Ok((result.heights, result.value_error))
+        Ok((result.positions, result.value_error))
     }
 
     /// Displacements, stresses and contact fields of a solved shape; the sensitivity is left out.
@@ -176,7 +180,7 @@ impl<S: ContactSolver> ContactShape<S> {
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
     pub fn fields(&self, state: &ContactState<S::State>) -> Result<Fields, OracleError> {
-        Ok(Fields::new(self.problem(), self.bodies(state)?, &state.forces))
+        Ok(Fields::new(self.problem(), self.bodies(state)?, (&state.rows, &state.forces)))
     }
 
     /// All bodies of a solved shape: those that the state holds, else recovered now.
@@ -185,6 +189,18 @@ impl<S: ContactSolver> ContactShape<S> {
     /// [`OracleError::Failed`] for a state of another mesh.
     pub fn bodies(&self, state: &ContactState<S::State>) -> Result<Vec<SolvedBody>, OracleError> {
         state.bodies.clone().map_or_else(|| self.solver.bodies(&state.solution).map_err(oracle), Ok)
+    }
+
+    /// The derivative of Σ weights·outputs by the positions of the nodes of the lower body at fixed contact forces.
+    pub(crate) fn output_position_gradient(
+        &self,
+        control: &Vector,
+        state: &ContactState<S::State>,
+        weights: &Vector,
+    ) -> Vec<[f64; 3]> {
+        let problem = self.problem();
+        let [_, by_area] = self.outputs.pull_back(&state.forces.normal, &state.rows.areas(), weights.as_slice());
+        problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area)
     }
 
     fn check_dimension(&self, control: &Vector) -> Result<(), OracleError> {
@@ -197,7 +213,7 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
     type WarmStart = ContactWarmStart;
 
     fn control_dimension(&self) -> usize {
-        self.problem().scene.control_points.iter().product()
+        self.problem().map.control_count()
     }
 
     fn solve(
@@ -243,19 +259,20 @@ impl<S: ContactSolver> Coderivative for ContactShape<S> {
     }
 }
 
-/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are gaps of open nodes, mm.
+/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa, or those of a cost
+/// ([`ContactShape::with_outputs`]); the slacks are gaps of open nodes, mm.
 impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
     fn outputs(&self, state: &Self::State) -> Vector {
-        self.problem().boundary.pressures(&state.forces.normal)
+        Vector::from_vec(self.outputs.values(&state.forces.normal, &state.rows.areas()))
     }
 
-    fn output_dual(&self, _state: &Self::State, weights: &Vector) -> Vector {
-        let boundary = &self.problem().boundary;
-        let mut dual = Vector::zeros(boundary.dual_dimension());
-        for (index, (weight, point)) in weights.iter().zip(&boundary.points).enumerate() {
-            dual[index] = weight / point.area;
-        }
-        dual
+    fn output_dual(&self, control: &Vector, state: &Self::State, weights: &Vector) -> CostGradient {
+        let problem = self.problem();
+        let [by_force, _] = self.outputs.pull_back(&state.forces.normal, &state.rows.areas(), weights.as_slice());
+        let mut dual = Vector::zeros(problem.boundary.row_count);
+        problem.boundary.points.iter().zip(by_force).for_each(|(point, weight)| dual[point.start] = weight);
+        let explicit = problem.map.pull_back(&self.output_position_gradient(control, state, weights));
+        CostGradient { control: Vector::from_vec(explicit), state: dual }
     }
 
     fn linearize(
@@ -267,12 +284,19 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         self.check_dimension(control)?;
         let (problem, outputs) = (self.problem(), self.outputs(state));
         let unit = |k: usize| (0..control.len()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let changes: Vec<Vec<f64>> = (0..control.len()).map(|k| problem.height_map.heights(&unit(k))).collect();
+        let changes: Vec<Vec<f64>> = (0..control.len()).map(unit).collect();
         let tangents = self.solver.tangents(&state.solution, &changes, accuracy.tolerance()).map_err(oracle)?;
         state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
-        let points = &problem.boundary.points;
-        let jacobian =
-            Matrix::from_fn(points.len(), control.len(), |i, k| tangents.forces[k][points[i].start] / points[i].area);
+        let (points, areas) = (&problem.boundary.points, state.rows.areas());
+        let velocities = problem.map.velocities(&changes);
+        let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
+        let mut jacobian = Matrix::zeros(outputs.len(), control.len());
+        for (k, mut column) in jacobian.column_iter_mut().enumerate() {
+            let moved = lower.as_ref().map(|lower| problem.area_changes(lower, &velocities, k));
+            let forces = |node: usize| tangents.forces[k][points[node].start];
+            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
+            column.copy_from_slice(&changes);
+        }
         let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
         let inactive = InactiveConstraints {
             slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
@@ -287,7 +311,9 @@ fn oracle(error: ContactError) -> OracleError {
     match error {
         // Loops that were ended say no more than that they did not converge.
         _ if interrupted() => OracleError::Interrupted,
-        ContactError::InvertedElement { .. } => OracleError::OutsideDomain { reason: error.to_string() },
+        ContactError::InvertedElement { .. } | ContactError::NoFoot { .. } => {
+            OracleError::OutsideDomain { reason: error.to_string() }
+        }
         ContactError::NotConverged { solver, residual, iterations, .. } => {
             OracleError::NotConverged { solver, residual, iterations }
         }

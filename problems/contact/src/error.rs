@@ -114,19 +114,25 @@ impl SceneError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ContactError {
-    /// An element has no positive volume: the surface folds or touches the bottom.
-    #[error("body {body}: element ({i}, {j}, {k}) is inverted: det = {determinant:.6e}, allowed: > 0")]
+    /// A cell has no positive volume at an integration point: the shape folds.
+    #[error("{body}: cell {cell} is inverted: det = {determinant:.6e}, allowed: > 0")]
     InvertedElement {
-        /// 1 for the lower, 2 for the upper body.
-        body: usize,
-        /// Index of the brick along x₁.
-        i: usize,
-        /// Index of the brick along x₂.
-        j: usize,
-        /// Index of the brick along x₃.
-        k: usize,
-        /// Jacobian determinant at the first such column of nodes, from the unit cube, mm³.
+        /// Name of the body.
+        body: String,
+        /// Number of the cell in its mesh.
+        cell: usize,
+        /// Smallest Jacobian determinant at its integration points, mm³ from the reference cell.
         determinant: f64,
+    },
+    /// A contact node has no unique nearest point on the counter surface.
+    #[error("contact node {node} at {place:?} mm has no normal: {reason}")]
+    NoFoot {
+        /// The node of the lower body.
+        node: u32,
+        /// Its position, mm.
+        place: [f64; 3],
+        /// Why, in words.
+        reason: &'static str,
     },
     /// The load has a resultant along a motion that nothing holds.
     #[error(
@@ -165,11 +171,11 @@ pub enum ContactError {
         /// Norm of the resultants of the loads, N.
         resultant: f64,
     },
-    /// Subdomains cannot be joined to clusters of this shape.
-    #[error("clusters of {shape:?} subdomains are not allowed: {reason}")]
+    /// Subdomains cannot be joined to so many clusters.
+    #[error("{count} clusters are not allowed: {reason}")]
     Clusters {
-        /// Subdomains per axis of a cluster.
-        shape: [usize; 3],
+        /// Number of clusters.
+        count: usize,
         /// Why, and what is allowed.
         reason: String,
     },
@@ -289,6 +295,7 @@ impl ContactError {
         matches!(
             self,
             Self::InvertedElement { .. }
+                | Self::NoFoot { .. }
                 | Self::NoEquilibrium { .. }
                 | Self::FrictionTooWeak { .. }
                 | Self::ForeignState { .. }

@@ -5,28 +5,28 @@
 //! 0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ 𝓕 r_N,   w_T = −κ r_T with κ ≥ 0, and κ = 0 where |r_T| < 𝓕 r_N
 //! ```
 //! Node by node, r = (λ_N, λ_T) are the contact forces of method.md section 3, and H u is minus the jump, lower body
-//! less upper: w_N is the gap under load, w_T minus the slip. The bodies are not torn; dofs that supports hold are
+//! less upper: w_N is the gap under load, w_T minus the slip. The bodies are not torn; directions that supports hold are
 //! eliminated.
 
-use crate::body::local_pattern::LocalPattern;
-use crate::body::mesh::Subdomain;
-use crate::body::shape_load::nodal_loads;
+use crate::body::NodalAxes;
+use crate::body::loads::piece_loads;
 use crate::equilibrium::ContactProblem;
 use crate::error::ContactError;
 
-/// Rows of H per contact node: the normal, then the tangential directions x₁ and x₂.
+/// Rows of H per contact node: the normal, then two tangential directions.
 pub const ROWS: usize = 3;
 
 /// The matrices of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionProblem {
-    /// The unknown displacements: body (0 lower, 1 upper), node of its grid, component.
+    /// The unknown displacements: body (0 lower, 1 upper), node of its mesh, component along the axes; along the
+    /// directions across the supports, in their order, where these hold the node along other directions than axes.
     pub unknowns: Vec<[usize; 3]>,
     /// K by its lower triangle: (row, column, value in N/mm).
     pub stiffness: Vec<(usize, usize, f64)>,
     /// The loads f, N.
     pub load: Vec<f64>,
-    /// H: (row, column, ±1). A row is empty where supports hold its direction on all bodies.
+    /// H: (row, column, value). A row is empty where supports hold its direction on all bodies.
     pub contact: Vec<(usize, usize, f64)>,
     /// g per contact node: the gap before loading, mm.
     pub gaps: Vec<f64>,
@@ -36,63 +36,71 @@ pub struct FrictionProblem {
     pub places: Vec<[f64; 3]>,
     /// Tributary areas of the contact nodes, mm²; a pressure is λ_N over the area.
     pub areas: Vec<f64>,
+    /// Unit normals of the contact nodes.
+    pub normals: Vec<[f64; 3]>,
 }
 
 impl FrictionProblem {
     /// Number of displacements of all bodies, those that supports hold included.
     pub fn most_unknowns(problem: &ContactProblem) -> usize {
-        3 * problem.grid.node_count() * problem.bodies().count()
+        problem.displacement_count()
     }
 
     /// The matrices of the shape with these controls.
     ///
     /// # Errors
-    /// [`ContactError::InvertedElement`].
+    /// [`ContactError::InvertedElement`], [`ContactError::NoFoot`].
     pub fn new(problem: &ContactProblem, controls: &[f64]) -> Result<Self, ContactError> {
-        let (grid, blocks) = (&problem.grid, problem.blocks(controls)?);
-        let pattern = LocalPattern::new(grid.cells, &[]);
+        let positions = problem.positions(controls)?;
+        let rows = problem.rows(&positions)?;
         let points = &problem.boundary.points;
         let mut this = Self {
             unknowns: Vec::new(),
             stiffness: Vec::new(),
             load: Vec::new(),
             contact: Vec::new(),
-            gaps: problem.gaps(&blocks[0]),
-            friction: vec![problem.boundary.friction; points.len()],
-            places: Vec::new(),
-            areas: points.iter().map(|point| point.area).collect(),
+            gaps: rows.gaps().collect(),
+            friction: points.iter().map(|point| point.friction).collect(),
+            places: points.iter().map(|point| positions[0][point.node as usize]).collect(),
+            areas: rows.areas(),
+            normals: rows.nodes.iter().map(|node| node.normal).collect(),
         };
-        for (body, (block, scene)) in blocks.iter().zip(problem.bodies()).enumerate() {
-            let held = (0..grid.node_count()).flat_map(|node| scene.held(grid, pattern.shape.local_position(node)));
+        for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
+            let piece = body.whole();
+            let axes = NodalAxes::new(body, &piece);
             // Numbers of the free dofs among all unknowns.
-            let numbers: Vec<Option<usize>> = held
-                .enumerate()
-                .map(|(dof, held)| {
-                    (!held).then(|| {
-                        this.unknowns.push([body, dof / 3, dof % 3]);
-                        this.unknowns.len() - 1
-                    })
+            let mut number_of = |(dof, held): (usize, &bool)| {
+                (!held).then(|| {
+                    this.unknowns.push([number, piece.nodes[dof / 3] as usize, dof % 3]);
+                    this.unknowns.len() - 1
                 })
-                .collect();
-            let values = pattern.assemble(&scene.material, |brick| block.brick(brick));
-            let (starts, rows) = (pattern.pattern.starts(), pattern.pattern.rows());
-            for column in 0..pattern.pattern.dimension() {
+            };
+            let numbers: Vec<Option<usize>> = axes.held.iter().enumerate().map(&mut number_of).collect();
+            let mut values = piece.assemble(body, positions, |material| *material);
+            let lower = &piece.pattern.lower;
+            axes.turn_matrix(lower, &mut values);
+            for column in 0..lower.dimension() {
                 let Some(second) = numbers[column] else { continue };
-                for position in starts[column]..starts[column + 1] {
-                    this.stiffness.extend(numbers[rows[position]].map(|first| (first, second, values[position])));
+                for position in lower.starts()[column]..lower.starts()[column + 1] {
+                    let first = numbers[lower.rows()[position]];
+                    this.stiffness.extend(first.map(|first| (first, second, values[position])));
                 }
             }
-            let loads = nodal_loads(block, &Subdomain::whole(&block.grid), &scene.loads).into_iter().zip(&numbers);
-            this.load.extend(loads.filter(|(_, number)| number.is_some()).map(|(force, _)| force));
-            let (layer, sign) = if body == 0 { (grid.cells[2], -1.0) } else { (0, 1.0) };
-            for (index, point) in points.iter().enumerate() {
-                let node = [point.position[0], point.position[1], layer];
-                if body == 0 {
-                    this.places.push(block.coordinates(node));
-                }
-                for (row, component) in [2, 0, 1].into_iter().enumerate() {
-                    let number = numbers[3 * grid.node(node) + component];
-                    this.contact.extend(number.map(|number| (ROWS * index + row, number, sign)));
+            let mut loads = piece_loads(body, &piece, positions);
+            axes.turn(&mut loads);
+            let loads = loads.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
+            this.load.extend(loads.map(|(force, _)| force));
+            for (index, (point, node)) in points.iter().zip(&rows.nodes).enumerate() {
+                for side in point.sides.iter().filter(|side| side.body == number) {
+                    let Some(place) = piece.local(side.node) else { continue };
+                    for (row, direction) in node.all_directions(&point.free).into_iter().enumerate() {
+                        let turned = axes.turn_at(place, direction);
+                        for axis in (0..3).filter(|axis| turned[*axis] != 0.0) {
+                            let number = numbers[3 * place + axis];
+                            let entry = |number| (ROWS * index + row, number, -side.weight * turned[axis]);
+                            this.contact.extend(number.map(entry));
+                        }
+                    }
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! 3D contact with Coulomb friction between an optimized elastic body and an obstacle or a second body.
 //!
-//! The controls are spline heights α of the contact surface of the lower body. The state y = S(α) holds the contact
+//! The controls α move the nodes of the lower body, x = x₀ + N α: heights of its surface, or points of a lattice around
+//! it. The state y = S(α) holds the contact
 //! forces of the equilibrium. The cost rates the contact pressure. S is nonsmooth where nodes open, close, stick or
 //! slip; [`contact_shape::ContactShape`] returns one element of its coderivative by an adjoint solve. Units are N, mm,
 //! MPa. The equations are in `docs/method.md` of the repository.
@@ -10,14 +11,14 @@
 //! ```
 //! use contact::contact_shape::{ContactShape, SolverKind};
 //! use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
-//! use contact::scene::{Scene, signorini};
+//! use contact::scene::signorini;
 //! use nonsmooth::{CompositeObjective, NonsmoothObjective, Request, StateSolver};
 //!
 //! // The paper's Example 5.1, a block against a wavy obstacle, on 4 × 4 × 4 bricks.
-//! let scene = Scene { mesh: [4; 3], ..signorini()? };
+//! let scene = signorini()?.with_bricks([4; 3], [1; 3]);
 //! let shape = ContactShape::new(scene, SolverKind::Newton)?;
 //! let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
-//! let cost = PressureCost::new(measure, &shape.problem().boundary)?;
+//! let cost = PressureCost::new(measure, shape.problem())?;
 //! let start = shape.start();
 //! let theta = CompositeObjective::new(shape, cost);
 //!
@@ -40,11 +41,12 @@
 //! |---|---|
 //! | [`contact_shape`], [`cost`], [`contact_objective`] | the contact problem in the framework's terms: state solver with coderivative, costs, Θ |
 //! | [`scene`], [`shape`] | what a problem is made of; splines and the admissible set |
-//! | [`body`] | bricks and tearing; trilinear elasticity; element sums of the adjoint |
-//! | [`equilibrium`] | boundary, contact law, rigid motions, certificates, the discrete problem and its state |
+//! | [`body`] | meshes and their pieces; elasticity; element sums of the adjoint |
+//! | [`equilibrium`] | boundary, contact rows of a shape, contact law, rigid motions, certificates, the discrete problem and its state |
 //! | [`tfeti`] | total FETI: torn bodies, dual problem, Newton, the paper's method, derivative |
 //! | [`direct`] | direct condensation: an independent path |
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
+//! | [`formula`] | formulas of x₁, x₂, x₃ |
 //! | [`fields`] | displacements, stresses and contact fields of a solved shape |
 //! | [`friction_problem`] | the matrices of a shape, for other solvers |
 //! | [`solvers`] | the solver of a scene: by name, by choice, shared by several processes |
@@ -65,9 +67,11 @@ pub mod equilibrium;
 pub mod error;
 pub mod fields;
 pub mod friction_problem;
+pub mod formula;
 mod lattice;
 pub mod linear;
 pub mod memory;
+pub mod names;
 pub mod plausibility;
 pub mod qp;
 mod scalar;

@@ -2,7 +2,7 @@
 
 use crate::communication::Communication;
 use crate::error::SceneError;
-use crate::scene::{BodyScene, Scene};
+use crate::scene::{BodyScene, Geometry, Scene, SceneSize};
 use crate::solvers::{SolverKind, SolverPlan};
 use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
 use crate::work_estimate::factor_values;
@@ -35,29 +35,29 @@ pub(crate) fn estimate(
     columns: usize,
     processes: usize,
 ) -> f64 {
-    let bodies = if scene.upper.is_some() { 2.0 } else { 1.0 };
-    let nodes = |cells: [f64; 3]| cells.iter().map(|cells| cells + 1.0).product::<f64>();
-    let mesh = scene.mesh.map(|cells| cells as f64);
-    let contact = 3.0 * (mesh[0] + 1.0) * (mesh[1] + 1.0);
+    let SceneSize { bodies, nodes, piece_nodes, contact_nodes, contact_pieces, .. } = SceneSize::of(scene);
+    let contact = 3.0 * contact_nodes;
     if kind == SolverKind::Direct {
         // Factor with the contact dofs last (some 1.3 times the fill), Schur complements and compliances, the Newton
         // matrix and its LU.
-        let dofs = 3.0 * nodes(mesh);
+        let dofs = 3.0 * nodes;
         let dense = (bodies * 2.0 + 3.0) * contact * contact;
         return NUMBER * (bodies * (1.3 * factor_values(dofs) + STIFFNESS_PER_DOF * dofs) + dense);
     }
-    let pieces: f64 = bodies * scene.subdomains.iter().product::<usize>() as f64;
-    let cells: [f64; 3] = std::array::from_fn(|axis| mesh[axis] / scene.subdomains[axis] as f64);
-    let dofs = 3.0 * nodes(cells);
+    let pieces = bodies * SceneSize::of(scene).pieces;
+    let dofs = 3.0 * piece_nodes;
     let interior = if preconditioner == PreconditionerKind::Dirichlet { INTERIOR_SHARE } else { 0.0 };
-    let near = |body: &BodyScene| body.material.compressible_neighbour().is_some();
+    let near = |body: &BodyScene| {
+        let others = body.materials.iter().map(|(_, material)| material);
+        others.chain([&body.material]).any(|material| material.compressible_neighbour().is_some())
+    };
     let matrices = if near(&scene.lower) || scene.upper.iter().any(|upper| near(&upper.body)) { 2.0 } else { 1.0 };
     let per_piece =
         factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs;
-    let glued = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0);
+    let glued = (pieces * dofs - bodies * 3.0 * nodes).max(0.0);
     // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; those of the
     // contact subdomains take six dense matrices: constant part, its factor, two active sets with their LU.
-    let held = 6.0 * bodies * (scene.subdomains[0] * scene.subdomains[1]) as f64;
+    let held = 6.0 * bodies * contact_pieces;
     let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 6.0 * held * held;
     let (dual, torn) = TANGENT_VECTORS;
     // Processes share factors, torn vectors and rows of B_E; every process has the contact rows and the coarse problem.
@@ -97,16 +97,21 @@ fn on_this_machine(communication: &dyn Communication) -> usize {
 /// Refuses a scene that needs more bytes than are available, where that is known.
 fn compare(scene: &Scene, needed: f64, available: Option<f64>) -> Result<(), SceneError> {
     match available {
-        Some(available) if needed > USABLE * available => Err(SceneError::out_of_range(
-            "mesh.bricks",
-            format!(
-                "{} bricks with {} subdomains (about {:.1} GB)",
-                scene.mesh.map(|count| count.to_string()).join("x"),
-                scene.subdomains.map(|count| count.to_string()).join("x"),
-                needed / 1e9
-            ),
-            format!("what fits into the {:.1} GB of memory available", available / 1e9),
-        )),
+        Some(available) if needed > USABLE * available => {
+            let joined = |counts: [usize; 3]| counts.map(|count| count.to_string()).join("x");
+            let (field, what) = match &scene.geometry {
+                Geometry::Blocks(blocks) => {
+                    let (bricks, subdomains) = (joined(blocks.bricks), joined(blocks.subdomains));
+                    ("mesh.bricks", format!("{bricks} bricks with {subdomains} subdomains"))
+                }
+                Geometry::Mesh(geometry) => {
+                    let (nodes, cells) = (geometry.mesh.node_count(), geometry.mesh.cell_count());
+                    ("body.mesh", format!("{nodes} nodes and {cells} cells in about {} pieces", geometry.piece_count()))
+                }
+            };
+            let allowed = format!("what fits into the {:.1} GB of memory available", available / 1e9);
+            Err(SceneError::out_of_range(field, format!("{what} (about {:.1} GB)", needed / 1e9), allowed))
+        }
         _ => Ok(()),
     }
 }
@@ -136,7 +141,7 @@ mod tests {
             (84, 12, SolverKind::Newton, 0, 9.16e9),
             (35, 5, SolverKind::Direct, 0, 2.58e9),
         ] {
-            let scene = Scene { mesh: [mesh; 3], subdomains: [subdomains; 3], ..signorini().expect("a preset") };
+            let scene = signorini().expect("a preset").with_bricks([mesh; 3], [subdomains; 3]);
             let needed = estimate(&scene, kind, PreconditionerKind::Dirichlet, columns, 1);
             assert!(
                 (needed / measured - 1.0).abs() < 0.15,
@@ -149,7 +154,7 @@ mod tests {
     fn several_processes_share_the_factors_and_no_process_needs_more_than_one_alone() {
         // Measured at 24 bricks and 4 subdomains per edge: 236 MB on one process, 86 MB on each of four, of which some
         // 30 MB are those of a process without a scene.
-        let scene = Scene { mesh: [24; 3], subdomains: [4; 3], ..signorini().expect("a preset") };
+        let scene = signorini().expect("a preset").with_bricks([24; 3], [4; 3]);
         let needed = |processes| estimate(&scene, SolverKind::Newton, PreconditionerKind::Dirichlet, 0, processes);
         let shares = [2, 4, 64].map(|processes| needed(processes) / needed(1));
         assert!(0.2 < shares[1] && shares[1] < 0.4 && shares[0] < 1.0 && shares[2] < shares[1], "{shares:?}");
@@ -160,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_scene_beyond_any_machine_is_refused_with_the_figures() {
-        let scene = Scene { mesh: [400; 3], subdomains: [1; 3], ..signorini().expect("a preset") };
+        let scene = signorini().expect("a preset").with_bricks([400; 3], [1; 3]);
         let error = check(&SolverPlan::new(scene, SolverKind::Direct), &InProcess);
         if available().is_some() {
             let text = error.expect_err("needs terabytes").to_string();

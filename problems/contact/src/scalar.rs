@@ -15,7 +15,13 @@ pub trait Scalar:
     fn constant(value: f64) -> Self;
     fn value(self) -> f64;
     /// Square root; the argument is positive.
-    fn sqrt(self) -> Self;
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt, |x| 0.5 / x.sqrt())
+    }
+    /// A function with its slope.
+    fn map(self, function: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> Self;
+    /// self to the power `exponent`.
+    fn power(self, exponent: Self) -> Self;
 }
 
 impl Scalar for f64 {
@@ -25,8 +31,11 @@ impl Scalar for f64 {
     fn value(self) -> f64 {
         self
     }
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
+    fn map(self, function: impl Fn(f64) -> f64, _slope: impl Fn(f64) -> f64) -> Self {
+        function(self)
+    }
+    fn power(self, exponent: Self) -> Self {
+        self.powf(exponent)
     }
 }
 
@@ -102,9 +111,15 @@ impl Scalar for Dual {
     fn value(self) -> f64 {
         self.value
     }
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        Self::new(root, self.derivative / (2.0 * root))
+    fn map(self, function: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> Self {
+        let inner = self.derivative;
+        Self::new(function(self.value), if inner == 0.0 { 0.0 } else { slope(self.value) * inner })
+    }
+    fn power(self, exponent: Self) -> Self {
+        let (a, b) = (self.value, exponent.value);
+        let by_base = if self.derivative == 0.0 { 0.0 } else { b * a.powf(b - 1.0) * self.derivative };
+        let by_exponent = if exponent.derivative == 0.0 { 0.0 } else { a.powf(b) * a.ln() * exponent.derivative };
+        Self::new(a.powf(b), by_base + by_exponent)
     }
 }
 

@@ -37,7 +37,7 @@ pub fn standstill<'r, S: ContactSolver>(
     let (controls, state) = end;
     let value = objective.value(controls, state);
     // Without loads, what is left of forces is rounding of the gaps.
-    let idle = objective.solver().problem().scene.load() == 0.0;
+    let idle = objective.solver().problem().load() == 0.0;
     let slope = objective.differentiate(controls, state)?.subgradient.lp_norm(1);
     let is_flat = idle || slope * objective.first_step(start) <= FLAT * value.abs();
     let flat = |reason: String| Warning {

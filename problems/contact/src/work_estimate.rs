@@ -8,7 +8,7 @@
 //! repeated.
 
 use crate::equilibrium::Work;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneSize};
 use crate::solvers::SolverKind;
 
 /// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of
@@ -42,15 +42,12 @@ pub struct WorkEstimate {
 impl WorkEstimate {
     /// The estimate for a scene.
     pub fn of(scene: &Scene) -> Self {
-        let bodies = if scene.upper.is_some() { 2.0 } else { 1.0 };
-        let dofs = |cells: [f64; 3]| 3.0 * cells.iter().map(|cells| cells + 1.0).product::<f64>();
+        let size = SceneSize::of(scene);
         let factorization = |values: f64, dofs: f64| 2.0 * values * values / dofs;
-        let mesh = scene.mesh.map(|cells| cells as f64);
-        let pieces = bodies * scene.subdomains.iter().product::<usize>() as f64;
-        let piece = dofs(std::array::from_fn(|axis| mesh[axis] / scene.subdomains[axis] as f64));
-        let nodes = (mesh[0] + 1.0) * (mesh[1] + 1.0);
-        let rows = nodes * if scene.friction > 0.0 { 3.0 } else { 1.0 };
-        let whole = factorization(CONTACT_LAST * factor_values(dofs(mesh)), dofs(mesh));
+        let (dofs, piece) = (3.0 * size.nodes, 3.0 * size.piece_nodes);
+        let (bodies, pieces, nodes) = (size.bodies, size.bodies * size.pieces, size.contact_nodes);
+        let rows = nodes * if scene.contact.has_friction() { 3.0 } else { 1.0 };
+        let whole = factorization(CONTACT_LAST * factor_values(dofs), dofs);
         Self {
             torn_factorization: pieces * factorization(factor_values(piece), piece),
             product: pieces * 4.0 * factor_values(piece),

@@ -1,8 +1,23 @@
-//! An elastic body: bricks, trilinear elasticity on them, and the element sums of the adjoint with respect to heights.
+//! Elastic bodies: meshes, elasticity on their cells, materials, supports and loads; pieces with their matrices; the
+//! element sums of the adjoint.
+//!
+//! ```text
+//! mesh ─ materials, supports, loads, tied nodes ─▶ Body ─ cells ─▶ Piece: pattern, matrix
+//! positions of a shape, u, p ─ shape_sensitivity ─▶ −pᵀ∂(K u − f)/∂x      velocities ─ shape_force ─▶ −∂(K u − f)[x′]
+//! ```
 
+#[expect(clippy::module_inception, reason = "the type that the folder is named for")]
+mod body;
 pub mod elasticity;
-pub mod local_pattern;
+pub(crate) mod loads;
 pub mod mesh;
+mod nodal_axes;
+mod piece;
 pub(crate) mod shape_force;
-pub(crate) mod shape_load;
 pub(crate) mod shape_sensitivity;
+mod support;
+
+pub use body::{Body, Ends};
+pub(crate) use nodal_axes::NodalAxes;
+pub(crate) use support::{beyond, nodal_normals};
+pub use piece::{Patterns, Piece, PiecePattern};

@@ -1,64 +1,40 @@
-//! −∂(K u − f): the nodal forces that changes of the column heights cause at a fixed displacement u; method.md (5.2).
+//! −∂(K u − f)[x′]: the nodal forces that velocities of the nodes cause at a fixed displacement u; method.md (5.2).
 //!
-//! ```text
-//! x₃ of layer k is F·k/n₃:   r = −Σ_nodes (k/n₃) δF_column ∂(K u − f)/∂x₃
-//! ```
 //! The adjoint counterpart is [`shape_sensitivity`](super::shape_sensitivity): its −pᵀ∂(K u − f) is pᵀr.
 
-use crate::body::elasticity::Material;
-use crate::body::elasticity::brick::DOFS;
-use crate::body::elasticity::hex8;
-use crate::body::mesh::{Block, Subdomain};
-use crate::body::shape_load::{loaded_faces, weight_derivatives};
-use crate::lattice;
-use crate::scene::Load;
+use crate::body::loads::{add_moved_loads, loads_depend};
+use crate::body::{Body, Piece};
+use crate::shape::Velocities;
 
-/// The forces over the dofs of one subdomain of the lower body, N, one vector per change of the column heights (mm, all
-/// columns of the body) of `changes`; `u`: displacement over the subdomain's dofs.
+/// The forces over the dofs of one piece, N, one vector per field of velocities; `u`: displacement over its dofs.
 pub fn shape_forces(
-    block: &Block,
-    place: &Subdomain,
-    material: &Material,
-    loads: &[Load],
+    body: &Body,
+    piece: &Piece,
+    positions: &[[f64; 3]],
     u: &[f64],
-    changes: &[Vec<f64>],
+    velocities: &Velocities<'_>,
 ) -> Vec<Vec<f64>> {
-    let mut forces = vec![vec![0.0; place.dof_count()]; changes.len()];
-    let layers = block.grid.cells[2] as f64;
-    // Change of x₃ of a node of the block.
-    let moved =
-        |node: [usize; 3], change: &[f64]| change[block.grid.column(node[0], node[1])] * node[2] as f64 / layers;
-    for local in lattice::points([0; 3], place.cells) {
-        let corners = lattice::corners(local).map(|node| place.local_node(node));
-        let nodes = lattice::corners(lattice::add(local, place.first_cell));
-        let brick = block.brick(lattice::add(local, place.first_cell));
-        let displacement: [f64; DOFS] = std::array::from_fn(|dof| u[3 * corners[dof / 3] + dof % 3]);
-        let derivative = hex8::height_forces(&brick, material, &displacement);
-        for (force, change) in forces.iter_mut().zip(changes) {
-            let heights = nodes.map(|node| moved(node, change));
-            if heights.iter().all(|height| *height == 0.0) {
-                continue;
-            }
-            for dof in 0..DOFS {
-                let sum: f64 = derivative.iter().zip(heights).map(|(row, height)| row[dof] * height).sum();
-                force[3 * corners[dof / 3] + dof % 3] -= sum;
-            }
+    let count = velocities.count();
+    let mut forces = vec![vec![0.0; piece.dof_count()]; count];
+    let mut cell_u = Vec::new();
+    for (index, &cell) in piece.cells.iter().enumerate() {
+        let (cell, nodes) = (cell as usize, body.mesh.cell(cell as usize).nodes);
+        let fields = velocities.of_nodes(nodes);
+        if fields.is_empty() {
+            continue;
+        }
+        piece.cell_values(index, u, &mut cell_u);
+        let mut moved = vec![vec![0.0; cell_u.len()]; fields.len()];
+        let pairs = fields.iter().zip(&mut moved).map(|((_, field), moved)| (field.as_slice(), moved.as_mut_slice()));
+        body.mesh.cell_nodes(cell, positions).add_moved_forces(body.material(cell), &cell_u, pairs);
+        for ((column, _), mut moved) in fields.iter().zip(moved) {
+            moved.iter_mut().for_each(|force| *force = -*force);
+            piece.add_cell_forces(index, &moved, &mut forces[*column]);
         }
     }
-    let local = |node: [usize; 3]| place.local_node(lattice::subtract(node, place.first_cell));
-    for load in loads {
-        for face in loaded_faces(&block.grid, load.face, Some(place)) {
-            let derivatives = weight_derivatives(block, &face);
-            for (force, change) in forces.iter_mut().zip(changes) {
-                for (node, weights) in face.iter().zip(&derivatives) {
-                    let height = moved(*node, change);
-                    for (corner, weight) in face.iter().zip(weights) {
-                        for (component, traction) in load.traction.iter().enumerate() {
-                            force[3 * local(*corner) + component] += height * weight * traction;
-                        }
-                    }
-                }
-            }
+    if loads_depend(body, |node| velocities.moves(node)) {
+        for (column, forces) in forces.iter_mut().enumerate() {
+            add_moved_loads(body, piece, positions, |node| velocities.at(node, column), forces);
         }
     }
     forces

@@ -1,59 +1,40 @@
-//! −pᵀ(∂_αK u − ∂_αf), element by element, as sensitivities of the heights of the columns; method.md (5.1), (5.2).
-//!
-//! ```text
-//! x₃ of layer k is F·k/n₃:   ∂/∂F_column = Σ_k (k/n₃) ∂/∂x₃ of node (column, k)
-//! ```
+//! −pᵀ(∂K u − ∂f), cell by cell, as sensitivities of the positions of nodes; method.md (5.1), (5.2).
 
-use crate::body::elasticity::Material;
-use crate::body::elasticity::brick::DOFS;
-use crate::body::elasticity::hex8;
-use crate::body::mesh::{Block, Subdomain};
-use crate::body::shape_load::{height_derivative, loaded_faces};
-use crate::lattice;
-use crate::scene::Load;
+use crate::body::loads::load_sensitivities;
+use crate::body::{Body, Piece};
+use std::collections::BTreeMap;
 
-/// Sensitivities of the column heights from one subdomain of the lower body: (column, value) for its columns.
-///
-/// `u`, `p`: displacement and adjoint displacement over the subdomain's dofs.
-pub fn column_sensitivities(
-    block: &Block,
-    place: &Subdomain,
-    material: &Material,
-    loads: &[Load],
-    u: &[f64],
-    p: &[f64],
-) -> Vec<(usize, f64)> {
-    let [n1, n2, n3] = place.nodes();
-    let mut nodes = vec![0.0; n1 * n2 * n3];
-    for local in lattice::points([0; 3], place.cells) {
-        let corners = lattice::corners(local).map(|node| place.local_node(node));
-        let take =
-            |values: &[f64]| -> [f64; DOFS] { std::array::from_fn(|dof| values[3 * corners[dof / 3] + dof % 3]) };
-        let coordinates = block.brick(lattice::add(local, place.first_cell));
-        let derivative = hex8::height_derivative(&coordinates, material, &take(u), &take(p));
-        for (corner, derivative) in corners.into_iter().zip(derivative) {
-            nodes[corner] -= derivative;
+/// Sensitivities of the nodes of one piece (node of the mesh, value), from displacement u and adjoint displacement p over
+/// its dofs. Nodes that do not move, by `moves`, are left out.
+pub fn position_sensitivities(
+    body: &Body,
+    piece: &Piece,
+    positions: &[[f64; 3]],
+    [u, p]: [&[f64]; 2],
+    moves: impl Fn(u32) -> bool,
+) -> BTreeMap<u32, [f64; 3]> {
+    let mut sensitivities: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+    let (mut cell_u, mut cell_p) = (Vec::new(), Vec::new());
+    for (index, &cell) in piece.cells.iter().enumerate() {
+        let (cell, nodes) = (cell as usize, body.mesh.cell(cell as usize).nodes);
+        if !nodes.iter().any(|node| moves(*node)) {
+            continue;
+        }
+        piece.cell_values(index, u, &mut cell_u);
+        piece.cell_values(index, p, &mut cell_p);
+        let derivative =
+            body.mesh.cell_nodes(cell, positions).position_derivative(body.material(cell), &cell_u, &cell_p);
+        for (node, derivative) in nodes.iter().zip(derivative) {
+            let sum = sensitivities.entry(*node).or_default();
+            (0..3).for_each(|axis| sum[axis] -= derivative[axis]);
         }
     }
-    let local = |node: [usize; 3]| place.local_node(lattice::subtract(node, place.first_cell));
-    for load in loads {
-        for face in loaded_faces(&block.grid, load.face, Some(place)) {
-            let adjoint = |node| {
-                let first = 3 * local(node);
-                [p[first], p[first + 1], p[first + 2]]
-            };
-            height_derivative(block, &face, load.traction, adjoint, |node, value| nodes[local(node)] += value);
-        }
+    let is_own = |cell: u32| piece.cells.binary_search(&cell).is_ok();
+    let p = |node: u32| piece.value_at(body, node, p);
+    for (node, value) in load_sensitivities(body, &is_own, positions, &p, &moves) {
+        let sum = sensitivities.entry(node).or_default();
+        (0..3).for_each(|axis| sum[axis] += value[axis]);
     }
-    let layers = block.grid.cells[2] as f64;
-    let mut columns = Vec::with_capacity(n1 * n2);
-    for i in 0..n1 {
-        for j in 0..n2 {
-            let column = block.grid.column(i + place.first_cell[0], j + place.first_cell[1]);
-            let sum =
-                (0..n3).map(|k| nodes[place.local_node([i, j, k])] * (k + place.first_cell[2]) as f64 / layers).sum();
-            columns.push((column, sum));
-        }
-    }
-    columns
+    sensitivities.retain(|node, _| moves(*node));
+    sensitivities
 }

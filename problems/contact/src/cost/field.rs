@@ -3,28 +3,27 @@
 //! ```text
 //! J = ((1/V₀) Σ_e V_e σ_vM,e^p)^{1/p}      or      J = f·u            l = ∂J/∂u: a load in the adjoint problem
 //! ```
-//! What J depends on the shape at fixed displacements is ∇₁J of the framework: volumes and stresses of bricks whose
-//! nodes move, and loads on faces whose area changes. Only the lower body changes its shape.
+//! What J depends on the shape at fixed displacements is ∇₁J of the framework: volumes and stresses of cells whose
+//! nodes move, and loads that depend on the shape. Only the lower body changes its shape.
 
-use crate::body::elasticity::brick::DOFS;
-use crate::body::elasticity::von_mises::{StressedBrick, stress_and_volume};
-use crate::body::mesh::{Block, Grid, Subdomain};
-use crate::body::shape_load::{height_derivative, loaded_faces, nodal_loads};
-use crate::cost::region::{Region, RegionBricks};
+use crate::body::Body;
+use crate::body::elasticity::CellNodes;
+use crate::body::loads::{load_sensitivities, nodal_forces};
+use crate::cost::region::{Region, RegionCells};
 use crate::equilibrium::{ContactProblem, ContactState, SolvedBody};
 use crate::error::SceneError;
-use crate::scene::BodyScene;
-use crate::shape::HeightMap;
+use crate::shape::ShapeMap;
 use nonsmooth::{Cost, CostGradient, Vector};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// A function of the displacements of the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FieldMeasure {
-    /// ((1/V₀) Σ V_e σ_vM,e^p)^{1/p}, MPa: a mean of the von Mises stress at the centres of the bricks of a region, the
-    /// closer to its largest value the larger p is. V₀ is the volume of the region at the start height.
+    /// ((1/V₀) Σ V_e σ_vM,e^p)^{1/p}, MPa: a mean of the von Mises stress at the centres of the cells of a region, the
+    /// closer to its largest value the larger p is. V₀ is the volume of the region at the start.
     StressNorm {
-        /// The bricks that count.
+        /// The cells that count.
         region: Region,
         /// The exponent p > 1.
         exponent: f64,
@@ -39,15 +38,14 @@ pub enum FieldMeasure {
 #[derive(Debug, Clone)]
 pub struct FieldCost {
     measure: FieldMeasure,
-    /// Bricks of the region per body; none for the compliance.
-    bricks: Vec<Vec<[usize; 3]>>,
+    /// Cells of the region per body; none for the compliance.
+    cells: Vec<Vec<usize>>,
     /// The volume V₀ of the region, mm³.
     volume: f64,
-    grid: Grid,
-    bodies: Vec<BodyScene>,
-    height_map: HeightMap,
+    bodies: Arc<[Body]>,
+    map: Arc<ShapeMap>,
     /// Entries of a dual before those of the displacements.
-    dual_dimension: usize,
+    row_count: usize,
 }
 
 /// The derivatives of J at a state.
@@ -55,31 +53,24 @@ pub struct FieldCost {
 pub struct FieldGradient {
     /// ∂J/∂u, three entries per node of every body, lower first, unit of J per mm.
     pub displacements: Vec<f64>,
-    /// ∂J/∂(height of a contact node) at fixed displacements, unit of J per mm.
-    pub heights: Vec<f64>,
+    /// ∂J/∂x per node of the lower body at fixed displacements, unit of J per mm; 0 for nodes that no control moves.
+    pub positions: Vec<[f64; 3]>,
 }
 
 impl FieldCost {
     /// The cost on the bodies of a problem.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, and as [`Region::bricks`].
+    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, and as [`Region::cells`].
     pub fn new(measure: FieldMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
-        let (mut bricks, mut volume) = (Vec::new(), 1.0);
+        let (mut cells, mut volume) = (Vec::new(), 1.0);
         if let FieldMeasure::StressNorm { region, exponent } = &measure {
             let valid = *exponent > 1.0 && exponent.is_finite();
             SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
-            RegionBricks { bricks, volume } = region.bricks(problem)?;
+            RegionCells { cells, volume } = region.cells(problem)?;
         }
-        Ok(Self {
-            measure,
-            bricks,
-            volume,
-            grid: problem.grid,
-            bodies: problem.bodies().cloned().collect(),
-            height_map: problem.height_map.clone(),
-            dual_dimension: problem.boundary.dual_dimension(),
-        })
+        let (bodies, map) = (Arc::clone(&problem.bodies), Arc::clone(&problem.map));
+        Ok(Self { measure, cells, volume, bodies, map, row_count: problem.boundary.row_count })
     }
 
     /// The unit of the value.
@@ -94,7 +85,8 @@ impl FieldCost {
     pub fn value_of(&self, bodies: &[SolvedBody]) -> f64 {
         match &self.measure {
             FieldMeasure::StressNorm { exponent, .. } => {
-                let stresses = self.map_bricks(bodies, stress_and_volume);
+                let stresses =
+                    self.map_cells(bodies, |cell, shear_modulus, u| (cell.von_mises(shear_modulus, u), cell.volume()));
                 let largest = stresses.iter().flatten().map(|(stress, _)| *stress).fold(0.0, f64::max);
                 if largest == 0.0 {
                     return 0.0;
@@ -105,9 +97,10 @@ impl FieldCost {
                 largest * (terms.sum::<f64>() / self.volume).powf(1.0 / exponent)
             }
             FieldMeasure::Compliance => {
-                let works = bodies.iter().zip(&self.bodies).map(|(body, scene)| {
-                    let loads = nodal_loads(&body.block, &Subdomain::whole(&self.grid), &scene.loads);
-                    loads.iter().zip(body.displacement.as_flattened()).map(|(force, u)| force * u).sum::<f64>()
+                let works = bodies.iter().zip(&*self.bodies).map(|(solved, body)| {
+                    let forces = nodal_forces(body, &solved.positions).into_iter();
+                    let work = |(node, force): (u32, [f64; 3])| dot(force, solved.displacement[node as usize]);
+                    forces.map(work).sum::<f64>()
                 });
                 works.sum()
             }
@@ -116,105 +109,92 @@ impl FieldCost {
 
     /// The derivatives of J at solved bodies, lower first.
     pub fn gradient_of(&self, bodies: &[SolvedBody]) -> FieldGradient {
+        let mut gradient = FieldGradient {
+            displacements: vec![0.0; 3 * bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>()],
+            positions: vec![[0.0; 3]; bodies.first().map_or(0, |body| body.mesh.node_count())],
+        };
         match &self.measure {
-            FieldMeasure::StressNorm { exponent, .. } => self.stress_gradient(bodies, *exponent),
-            FieldMeasure::Compliance => self.compliance_gradient(bodies),
+            FieldMeasure::StressNorm { exponent, .. } => self.add_stress_gradient(bodies, *exponent, &mut gradient),
+            FieldMeasure::Compliance => self.add_compliance_gradient(bodies, &mut gradient),
         }
+        gradient
     }
 
-    /// What `compute` makes of every brick of the region, per body: given its nodes, shear modulus and displacements.
-    fn map_bricks<T: Send>(
+    /// What `compute` makes of every cell of the region, per body: given its nodes, shear modulus and displacements.
+    fn map_cells<T: Send>(
         &self,
         bodies: &[SolvedBody],
-        compute: impl Fn(&[[f64; 3]; 8], f64, &[f64; DOFS]) -> T + Sync,
+        compute: impl Fn(&CellNodes<f64>, f64, &[f64]) -> T + Sync,
     ) -> Vec<Vec<T>> {
-        let parts = self.bricks.iter().zip(bodies).zip(&self.bodies);
-        let of_body = |((bricks, body), scene): ((&Vec<[usize; 3]>, &SolvedBody), &BodyScene)| {
-            let of_brick = |brick: &[usize; 3]| {
-                let corners = self.grid.brick_nodes(*brick);
-                let u = std::array::from_fn(|dof| body.displacement[corners[dof / 3]][dof % 3]);
-                compute(&body.block.brick(*brick), scene.material.shear_modulus(), &u)
+        let parts = self.cells.iter().zip(bodies).zip(&*self.bodies);
+        let of_body = |((cells, solved), body): ((&Vec<usize>, &SolvedBody), &Body)| {
+            let of_cell = |&cell: &usize| {
+                let u = body.mesh.cell_values(cell, &solved.displacement);
+                compute(&body.mesh.cell_nodes(cell, &solved.positions), body.material(cell).shear_modulus(), &u)
             };
-            bricks.par_iter().map(of_brick).collect()
+            cells.par_iter().map(of_cell).collect()
         };
         parts.map(of_body).collect()
     }
 
     /// With r = σ/σ_max, s = Σ V r^p/V₀: dJ = s^{1/p−1}/V₀ Σ (V r^{p−1} dσ + σ_max/p r^p dV).
-    fn stress_gradient(&self, bodies: &[SolvedBody], exponent: f64) -> FieldGradient {
-        let bricks = self.map_bricks(bodies, StressedBrick::new);
-        let largest = bricks.iter().flatten().map(|brick| brick.stress).fold(0.0, f64::max);
-        let mut gradient = self.no_gradient(bodies.len());
+    fn add_stress_gradient(&self, bodies: &[SolvedBody], exponent: f64, gradient: &mut FieldGradient) {
+        let cells = self.map_cells(bodies, CellNodes::stressed);
+        let largest = cells.iter().flatten().map(|cell| cell.stress).fold(0.0, f64::max);
         if largest == 0.0 {
-            return gradient;
+            return;
         }
-        let terms = bricks.iter().flatten().map(|brick| brick.volume * (brick.stress / largest).powf(exponent));
+        let terms = cells.iter().flatten().map(|cell| cell.volume * (cell.stress / largest).powf(exponent));
         let sum = terms.sum::<f64>() / self.volume;
         let factor = sum.powf(1.0 / exponent - 1.0) / self.volume;
-        let mut moved = vec![0.0; self.grid.node_count()];
-        for (body, (places, bricks)) in self.bricks.iter().zip(&bricks).enumerate() {
-            let first = 3 * self.grid.node_count() * body;
-            for (place, brick) in places.iter().zip(bricks) {
-                let relative = (brick.stress / largest).powf(exponent - 1.0);
-                let by_stress = factor * brick.volume * relative;
-                let by_volume = factor * relative * brick.stress / exponent;
-                for (a, node) in self.grid.brick_nodes(*place).into_iter().enumerate() {
-                    for component in 0..3 {
-                        gradient.displacements[first + 3 * node + component] +=
-                            by_stress * brick.by_displacement[3 * a + component];
-                    }
-                    // Only the nodes of the lower body move.
-                    if body == 0 {
-                        moved[node] += by_stress * brick.by_height[a] + by_volume * brick.volume_by_height[a];
+        let mut first = 0;
+        for (number, (places, cells)) in self.cells.iter().zip(&cells).enumerate() {
+            let mesh = &bodies[number].mesh;
+            for (place, cell) in places.iter().zip(cells) {
+                let relative = (cell.stress / largest).powf(exponent - 1.0);
+                let by_stress = factor * cell.volume * relative;
+                let by_volume = factor * relative * cell.stress / exponent;
+                for (local, &node) in mesh.cell(*place).nodes.iter().enumerate() {
+                    for axis in 0..3 {
+                        gradient.displacements[first + 3 * node as usize + axis] +=
+                            by_stress * cell.by_displacement[local][axis];
+                        // Only the nodes of the lower body move.
+                        if number == 0 && self.map.moves(node) {
+                            gradient.positions[node as usize][axis] += by_stress * cell.by_position[local][axis]
+                                + by_volume * cell.volume_by_position[local][axis];
+                        }
                     }
                 }
             }
+            first += 3 * mesh.node_count();
         }
-        gradient.heights = self.columns(&moved);
-        gradient
     }
 
     /// l = f, and uᵀ∂f.
-    fn compliance_gradient(&self, bodies: &[SolvedBody]) -> FieldGradient {
-        let mut gradient = self.no_gradient(bodies.len());
-        let parts =
-            bodies.iter().zip(&self.bodies).zip(gradient.displacements.chunks_exact_mut(3 * self.grid.node_count()));
-        for ((body, scene), loads) in parts {
-            loads.copy_from_slice(&nodal_loads(&body.block, &Subdomain::whole(&self.grid), &scene.loads));
+    fn add_compliance_gradient(&self, bodies: &[SolvedBody], gradient: &mut FieldGradient) {
+        let mut first = 0;
+        for (solved, body) in bodies.iter().zip(&*self.bodies) {
+            for (node, force) in nodal_forces(body, &solved.positions) {
+                for (axis, force) in force.into_iter().enumerate() {
+                    gradient.displacements[first + 3 * node as usize + axis] += force;
+                }
+            }
+            first += 3 * body.mesh.node_count();
         }
-        if let (Some(lower), Some(scene)) = (bodies.first(), self.bodies.first()) {
-            gradient.heights = self.columns(&load_sensitivities(&lower.block, scene, &lower.displacement));
+        if let (Some(lower), Some(body)) = (bodies.first(), self.bodies.first()) {
+            let u = |node: u32| lower.displacement[node as usize];
+            let moves = |node: u32| self.map.moves(node);
+            for (node, value) in load_sensitivities(body, &|_| true, &lower.positions, &u, &moves) {
+                if moves(node) {
+                    gradient.positions[node as usize] = value;
+                }
+            }
         }
-        gradient
-    }
-
-    fn no_gradient(&self, bodies: usize) -> FieldGradient {
-        FieldGradient {
-            displacements: vec![0.0; 3 * self.grid.node_count() * bodies],
-            heights: vec![0.0; self.grid.column_count()],
-        }
-    }
-
-    /// From derivatives by x₃ of the nodes of the lower body to those by the heights of its columns.
-    fn columns(&self, nodes: &[f64]) -> Vec<f64> {
-        let layers = self.grid.cells[2];
-        let share = |k: usize| k as f64 / layers as f64;
-        let sum = |(i, j)| (0..=layers).map(|k| share(k) * nodes[self.grid.node([i, j, k])]).sum();
-        self.grid.columns().map(sum).collect()
     }
 }
 
-/// The sensitivities uᵀ∂f/∂x₃ per node.
-fn load_sensitivities(block: &Block, scene: &BodyScene, displacement: &[[f64; 3]]) -> Vec<f64> {
-    let grid = &block.grid;
-    let mut nodes = vec![0.0; grid.node_count()];
-    for load in &scene.loads {
-        for face in loaded_faces(grid, load.face, None) {
-            let u = |node| displacement[grid.node(node)];
-            height_derivative(block, &face, load.traction, u, |node, value| nodes[grid.node(node)] += value);
-        }
-    }
-    nodes
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
 impl<S> Cost<ContactState<S>> for FieldCost {
@@ -223,12 +203,14 @@ impl<S> Cost<ContactState<S>> for FieldCost {
     }
 
     fn gradient(&self, _control: &Vector, state: &ContactState<S>) -> CostGradient {
-        let mut dual = vec![0.0; self.dual_dimension];
+        let mut dual = vec![0.0; self.row_count];
         let gradient = self.gradient_of(state.bodies.as_deref().unwrap_or_default());
         dual.extend(gradient.displacements);
-        CostGradient {
-            control: Vector::from_vec(self.height_map.pull_back(&gradient.heights)),
-            state: Vector::from_vec(dual),
-        }
+        let control = if gradient.positions.is_empty() {
+            Vector::zeros(self.map.control_count())
+        } else {
+            Vector::from_vec(self.map.pull_back(&gradient.positions))
+        };
+        CostGradient { control, state: Vector::from_vec(dual) }
     }
 }

@@ -6,12 +6,14 @@
 //! ```
 
 mod field;
+mod outputs;
 mod pressure;
 mod region;
 
 pub use field::{FieldCost, FieldGradient, FieldMeasure};
+pub use outputs::PressureOutputs;
 pub use pressure::{ContactAreas, NodeWeight, PressureCost, PressureMeasure, PressureRoot};
-pub use region::{Region, RegionBricks};
+pub use region::{Region, RegionCells};
 
 /// The function of a contact state that is minimised.
 #[derive(Debug, Clone, PartialEq)]

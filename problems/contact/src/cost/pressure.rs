@@ -4,9 +4,9 @@
 //! ∫σ^p dA = Σ A_i σ_i^p  or  Σσ^p,    max σ,    Σ A_i (σ_i − w_i)² / Σ A_i,    Σ A_i max(1 − σ_i/σ₀, 0)
 //! ```
 
-use crate::equilibrium::{ContactBoundary, ContactState};
+use crate::cost::outputs::{PressureOutputs, Scaling};
+use crate::equilibrium::{ContactProblem, ContactState};
 use crate::error::SceneError;
-use crate::scene::Scene;
 use nonsmooth::composite::{Maximum, OuterFunction, OutputPiece, weighted_gram};
 use nonsmooth::{ConstraintKind, Matrix, Vector};
 use serde::Serialize;
@@ -37,7 +37,8 @@ pub enum PressureMeasure {
     Peak,
     /// Σ A (σ − w)² / Σ A, MPa²: the mean squared deviation from a wanted pressure.
     Deviation {
-        /// w per contact node, MPa, in the order of [`ContactBoundary::points`].
+        /// w per contact node, MPa, in the order of
+        /// [`ContactBoundary::points`](crate::equilibrium::ContactBoundary::points).
         wanted: Vec<f64>,
     },
     /// Σ A max(1 − σ/σ₀, 0), mm²: the area that lacks contact pressure. A node counts with its whole area where it is
@@ -77,9 +78,10 @@ pub struct PressureCost {
     is_root: bool,
     /// What the nodes count in a norm; empty for the other measures.
     weights: Vec<f64>,
-    boundary: ContactBoundary,
-    /// Areas of its nodes, mm².
+    /// Areas of the contact nodes at the start, mm².
     areas: Vec<f64>,
+    /// Whether areas change with the shape.
+    areas_change: bool,
     /// The limit of the largest pressure, MPa, if there is one: a nonlinear constraint.
     peak_limit: Option<f64>,
 }
@@ -94,12 +96,12 @@ const NEAR_PEAK: f64 = 0.5;
 const TYPICAL_PEAK: f64 = 10.0;
 
 impl PressureCost {
-    /// The cost on a contact boundary.
+    /// The cost on the contact boundary of a problem.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, wanted pressures are finite, and σ₀ is finite
     /// and > 0; [`SceneError::WrongCount`] unless there is one wanted pressure per contact node.
-    pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
+    pub fn new(measure: PressureMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
         match &measure {
             PressureMeasure::Peak => {}
             PressureMeasure::Norm { exponent, .. } => {
@@ -107,7 +109,7 @@ impl PressureCost {
                 SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
             }
             PressureMeasure::Deviation { wanted } => {
-                let (expected, found) = (boundary.points.len(), wanted.len());
+                let (expected, found) = (problem.boundary.points.len(), wanted.len());
                 if expected != found {
                     return Err(SceneError::WrongCount { what: "wanted pressures".into(), expected, found });
                 }
@@ -124,13 +126,14 @@ impl PressureCost {
                 SceneError::require(valid, "objective.pressure", pressure, "a finite number > 0 (MPa)")?;
             }
         }
-        let areas: Vec<f64> = boundary.points.iter().map(|point| point.area).collect();
+        let areas = problem.start_rows().areas();
         let weights = match &measure {
             PressureMeasure::Norm { weight: NodeWeight::Area, .. } => areas.clone(),
             PressureMeasure::Norm { weight: NodeWeight::Nodes, .. } => vec![1.0; areas.len()],
             _ => vec![],
         };
-        Ok(Self { measure, is_root: false, weights, boundary: boundary.clone(), areas, peak_limit: None })
+        let areas_change = problem.areas_change();
+        Ok(Self { measure, is_root: false, weights, areas, areas_change, peak_limit: None })
     }
 
     /// The cost with the constraint max σ ≤ `limit`, MPa.
@@ -147,12 +150,12 @@ impl PressureCost {
         self.peak_limit
     }
 
-    /// The cost in a form that can be computed for the pressures of a scene: where a pressure norm may leave the range
+    /// The cost in a form that can be computed for the pressures of a problem: where a pressure norm may leave the range
     /// of doubles, its root in MPa, which has the same minimisers. The choice depends on neither mesh nor shape.
     #[must_use]
-    pub fn normalised_for(self, scene: &Scene) -> Self {
+    pub fn normalised_for(self, problem: &ContactProblem) -> Self {
         let PressureMeasure::Norm { exponent, .. } = self.measure else { return self };
-        let typical = TYPICAL_PEAK * scene.load() / (scene.size[0] * scene.size[1]);
+        let typical = TYPICAL_PEAK * problem.load() / problem.contact_area();
         match typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES {
             true => self.rooted(),
             false => self,
@@ -229,9 +232,9 @@ impl PressureCost {
     /// The contact areas of a state, where the open area is what is minimised.
     pub fn contact_areas<S>(&self, state: &ContactState<S>) -> Option<ContactAreas> {
         let PressureMeasure::OpenArea { .. } = self.measure else { return None };
-        let whole = self.areas.iter().sum::<f64>();
-        let closed = self.boundary.closed_area(&state.forces.status);
-        let open = self.value(&self.boundary.pressures(&state.forces.normal));
+        let (whole, closed) = (state.rows.area(), state.rows.closed_area(&state.forces.status));
+        let outputs = self.outputs().values(&state.forces.normal, &state.rows.areas());
+        let open = self.value(&Vector::from_vec(outputs));
         Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
 
@@ -239,7 +242,7 @@ impl PressureCost {
     /// open area lies above all pressures, or below those of all closed nodes. None otherwise.
     pub fn why_flat<S>(&self, state: &ContactState<S>) -> Option<String> {
         let PressureMeasure::OpenArea { pressure: bound } = self.measure else { return None };
-        let pressures = self.boundary.pressures(&state.forces.normal);
+        let pressures = state.rows.pressures(&state.forces.normal);
         let largest = pressures.iter().copied().fold(0.0, f64::max);
         let least = pressures.iter().copied().filter(|pressure| *pressure > 0.0).fold(f64::INFINITY, f64::min);
         if largest < bound {
@@ -252,11 +255,15 @@ impl PressureCost {
     }
 
     /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that
-    /// carries this force is below it.
+    /// carries this force is below it. None where areas change with the shape.
     ///
     /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, ΣAσ^p ≥ Λ^p / (ΣA)^{p−1}, max σ ≥ Λ/ΣA, Σ A max(1 − σ/σ₀, 0) ≥ max(ΣA − Λ/σ₀,
     /// 0), with Λ = Σλ_N ≥ 0 in N; method.md (9.1) to (9.5).
-    pub fn lower_bound(&self, total_force: f64) -> f64 {
+    pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
+        (!self.areas_change).then(|| self.least_value(total_force))
+    }
+
+    fn least_value(&self, total_force: f64) -> f64 {
         let whole = || self.areas.iter().sum::<f64>();
         match &self.measure {
             PressureMeasure::Norm { weight: NodeWeight::Area, .. } if self.is_root => total_force / whole(),
@@ -280,40 +287,30 @@ impl PressureCost {
 }
 
 impl PressureCost {
-    /// The largest pressure s, and Σ m(σ/s)^p; s is positive, also where no pressure is.
-    fn relative_sum(&self, pressures: &Vector, exponent: f64) -> (f64, f64) {
-        let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let terms =
-            pressures.iter().zip(&self.weights).map(|(p, weight)| weight * (p.max(0.0) / largest).powf(exponent));
-        // The node of the largest pressure alone gives this much, unless there is no pressure at all.
-        let least = self.weights.iter().copied().fold(f64::INFINITY, f64::min);
-        (largest, terms.sum::<f64>().max(least))
-    }
-}
-
-impl OuterFunction for PressureCost {
-    fn value(&self, pressures: &Vector) -> f64 {
-        let nodes = || pressures.iter().zip(&self.areas);
-        match &self.measure {
-            &PressureMeasure::Norm { exponent, .. } if self.is_root => {
-                let (largest, sum) = self.relative_sum(pressures, exponent);
-                largest * sum.powf(1.0 / exponent)
-            }
-            &PressureMeasure::Norm { exponent, .. } => {
-                pressures.iter().zip(&self.weights).map(|(p, weight)| weight * p.max(0.0).powf(exponent)).sum()
-            }
-            PressureMeasure::Deviation { wanted } => {
-                let terms = nodes().zip(wanted).map(|((pressure, area), wanted)| area * (pressure - wanted).powi(2));
-                terms.sum::<f64>() / self.areas.iter().sum::<f64>()
-            }
-            PressureMeasure::OpenArea { pressure } => {
-                nodes().map(|(found, area)| area * (1.0 - found / pressure).max(0.0)).sum()
-            }
-            PressureMeasure::Peak => Maximum.value(pressures),
+    /// The outputs of a state that this cost is a function of: the pressures where areas do not change.
+    pub fn outputs(&self) -> PressureOutputs {
+        if !self.areas_change {
+            return PressureOutputs::default();
         }
+        let scaling = match &self.measure {
+            &PressureMeasure::Norm { exponent, weight: NodeWeight::Area } => {
+                Scaling::Power { exponent, is_mean: self.is_root }
+            }
+            PressureMeasure::Norm { .. } | PressureMeasure::Peak => Scaling::Pressure,
+            PressureMeasure::Deviation { wanted } => Scaling::Deviation { wanted: wanted.clone() },
+            PressureMeasure::OpenArea { pressure } => Scaling::OpenArea { pressure: *pressure },
+        };
+        let with_pressures = self.peak_limit.is_some() && scaling != Scaling::Pressure;
+        PressureOutputs { scaling, areas: self.areas.clone(), with_pressures }
     }
 
-    fn subgradient(&self, pressures: &Vector) -> Vector {
+    /// The outputs that the measure is a function of; pressures of their own may follow.
+    fn of_measure(&self, outputs: &Vector) -> Vector {
+        outputs.rows(0, self.areas.len()).into_owned()
+    }
+
+    /// A subgradient of the measure by its outputs.
+    fn measure_subgradient(&self, pressures: &Vector) -> Vector {
         match &self.measure {
             &PressureMeasure::Norm { exponent, .. } => {
                 let (largest, factor) = match self.is_root {
@@ -342,15 +339,58 @@ impl OuterFunction for PressureCost {
         }
     }
 
+    /// The largest pressure s, and Σ m(σ/s)^p; s is positive, also where no pressure is.
+    fn relative_sum(&self, pressures: &Vector, exponent: f64) -> (f64, f64) {
+        let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let terms =
+            pressures.iter().zip(&self.weights).map(|(p, weight)| weight * (p.max(0.0) / largest).powf(exponent));
+        // The node of the largest pressure alone gives this much, unless there is no pressure at all.
+        let least = self.weights.iter().copied().fold(f64::INFINITY, f64::min);
+        (largest, terms.sum::<f64>().max(least))
+    }
+}
+
+impl OuterFunction for PressureCost {
+    fn value(&self, outputs: &Vector) -> f64 {
+        let pressures = self.of_measure(outputs);
+        let nodes = || pressures.iter().zip(&self.areas);
+        match &self.measure {
+            &PressureMeasure::Norm { exponent, .. } if self.is_root => {
+                let (largest, sum) = self.relative_sum(&pressures, exponent);
+                largest * sum.powf(1.0 / exponent)
+            }
+            &PressureMeasure::Norm { exponent, .. } => {
+                pressures.iter().zip(&self.weights).map(|(p, weight)| weight * p.max(0.0).powf(exponent)).sum()
+            }
+            PressureMeasure::Deviation { wanted } => {
+                let terms = nodes().zip(wanted).map(|((pressure, area), wanted)| area * (pressure - wanted).powi(2));
+                terms.sum::<f64>() / self.areas.iter().sum::<f64>()
+            }
+            PressureMeasure::OpenArea { pressure } => {
+                nodes().map(|(found, area)| area * (1.0 - found / pressure).max(0.0)).sum()
+            }
+            PressureMeasure::Peak => Maximum.value(&pressures),
+        }
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        let mut subgradient = self.measure_subgradient(&self.of_measure(outputs));
+        subgradient.resize_vertically_mut(outputs.len(), 0.0);
+        subgradient
+    }
+
     fn constraint_kinds(&self) -> &[ConstraintKind] {
         if self.peak_limit.is_some() { &[ConstraintKind::Nonsmooth] } else { &[] }
     }
 
     /// σ_i minus the limit for the nodes near the peak, MPa.
-    fn constraint_pieces(&self, pressures: &Vector) -> Vec<OutputPiece> {
+    fn constraint_pieces(&self, outputs: &Vector) -> Vec<OutputPiece> {
         let Some(limit) = self.peak_limit else { return vec![] };
-        let peak = Maximum.value(pressures);
-        let unit = |index: usize| Vector::from_fn(pressures.len(), |i, _| f64::from(u8::from(i == index)));
+        // The last outputs are the pressures, by themselves or beside those of the measure.
+        let first = outputs.len() - self.areas.len();
+        let pressures = outputs.rows_range(first..);
+        let peak = pressures.max();
+        let unit = |index: usize| Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == first + index)));
         let near =
             pressures.iter().enumerate().filter(|(_, pressure)| **pressure == peak || **pressure >= NEAR_PEAK * peak);
         near.map(|(index, pressure)| OutputPiece { constraint: 0, value: pressure - limit, weights: unit(index) })
@@ -360,7 +400,9 @@ impl OuterFunction for PressureCost {
     /// Σmσ^p has the curvature p(p−1)mσ^{p−2} per node; its root N has (p−1)/N (m(σ/N)^{p−2} − g gᵀ) with g =
     /// m(σ/N)^{p−1}, which is formed from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the
     /// open area, which have kinks, and for p < 2, where the curvature grows without bound as a node opens.
-    fn curvature(&self, pressures: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+    fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        let pressures = &self.of_measure(outputs);
+        let jacobian = &jacobian.rows(0, pressures.len()).into_owned();
         let exponent = match self.measure {
             PressureMeasure::Norm { exponent, .. } if exponent >= 2.0 => exponent,
             PressureMeasure::Deviation { .. } => {
@@ -370,7 +412,7 @@ impl OuterFunction for PressureCost {
             }
             _ => return None,
         };
-        let size = if self.is_root { self.value(pressures) } else { 1.0 };
+        let size = if self.is_root { self.value(outputs) } else { 1.0 };
         let relative = pressures.map(|pressure| pressure.max(0.0) / size);
         let factor = if self.is_root { (exponent - 1.0) / size } else { exponent * (exponent - 1.0) };
         let nodes = Vector::from_column_slice(&self.weights);

@@ -1,69 +1,69 @@
-//! A part of the bodies: the bricks whose centres lie in a box.
+//! A part of the bodies: the cells whose centres lie in a box, or those of a named volume.
 
-use crate::body::elasticity::brick::volume;
+use crate::body::Body;
 use crate::equilibrium::ContactProblem;
-use crate::error::{ContactError, SceneError};
+use crate::error::SceneError;
+use crate::names::find;
 
-/// A box of coordinates, its faces included, in one body or in all.
+/// A part of one body or of all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Smallest x₁, x₂, x₃, mm.
     pub lower: [f64; 3],
-    /// Largest x₁, x₂, x₃, mm.
+    /// Largest x₁, x₂, x₃, mm; the faces of the box belong to it.
     pub upper: [f64; 3],
     /// 0 for the lower body alone, 1 for the upper one alone, none for all bodies.
     pub body: Option<usize>,
+    /// The name of a volume of the mesh; none for all volumes.
+    pub volume: Option<String>,
 }
 
-/// The bricks of a region.
+/// The cells of a region.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RegionBricks {
-    /// Bricks (i, j, k) of every body, lower first.
-    pub bricks: Vec<Vec<[usize; 3]>>,
-    /// Volume of these bricks at the start height, mm³.
+pub struct RegionCells {
+    /// Cells of every body, lower first.
+    pub cells: Vec<Vec<usize>>,
+    /// Volume of these cells at the start, mm³.
     pub volume: f64,
 }
 
-/// Distance over the size of the scene at which a centre still counts as inside a box: rounding of its coordinates.
+/// Distance over the size of the bodies at which a centre still counts as inside a box: rounding of its coordinates.
 const ROUNDING: f64 = 1e-12;
 
 impl Region {
-    /// The bricks whose centres lie in the box.
-    ///
-    /// The lower body is taken as a block of the start height, so that no brick enters or leaves the region as the
-    /// shape changes.
+    /// All of all bodies.
+    pub const WHOLE: Self =
+        Self { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None, volume: None };
+
+    /// The cells of the named volume whose centres lie in the box at the start of the scene: no cell enters or leaves the
+    /// region as the shape changes.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for an upper body that
-    /// is inverted.
-    pub fn bricks(&self, problem: &ContactProblem) -> Result<RegionBricks, SceneError> {
-        let (grid, scene) = (&problem.grid, &problem.scene);
-        let inverted = |error: ContactError| {
-            SceneError::out_of_range("the bodies of objective.region", error, "bricks of positive volume")
-        };
-        let flat = vec![scene.start_height; scene.control_points.iter().product()];
-        let blocks = problem.blocks(&flat).map_err(inverted)?;
-        if let Some(body) = self.body.filter(|body| *body >= blocks.len()) {
+    /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for a volume that no
+    /// mesh has.
+    pub fn cells(&self, problem: &ContactProblem) -> Result<RegionCells, SceneError> {
+        let positions = problem.start_positions();
+        if let Some(body) = self.body.filter(|body| *body >= problem.bodies.len()) {
+            let value = if body == 1 { "upper" } else { "unknown" };
             let allowed = "a body of the scene, which has no upper one";
-            return Err(SceneError::out_of_range(
-                "objective.body",
-                if body == 1 { "upper" } else { "unknown" },
-                allowed,
-            ));
+            return Err(SceneError::out_of_range("objective.body", value, allowed));
         }
-        let slack = ROUNDING * scene.size[0].max(scene.size[1]).max(scene.start_height);
+        if let Some(volume) = &self.volume {
+            let names = problem.bodies.iter().flat_map(|body| body.mesh.volumes());
+            find("objective.volume", volume, names.map(String::as_str))?;
+        }
+        let coordinates = || positions.iter().flat_map(|nodes| nodes.as_flattened());
+        let slack = ROUNDING * coordinates().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        let mut found = RegionBricks { bricks: vec![Vec::new(); blocks.len()], volume: 0.0 };
-        for (body, block) in blocks.iter().enumerate().filter(|(body, _)| self.body.is_none_or(|own| own == *body)) {
-            for brick in grid.bricks() {
-                let nodes = block.brick(brick);
-                let centre: [f64; 3] =
-                    std::array::from_fn(|axis| nodes.iter().map(|node| node[axis]).sum::<f64>() / 8.0);
+        let mut found = RegionCells { cells: vec![Vec::new(); positions.len()], volume: 0.0 };
+        for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
+            for cell in (0..body.mesh.cell_count()).filter(|&cell| self.may_hold(number, body, cell)) {
+                let centre = body.mesh.centre(cell, positions);
                 let inside =
                     |axis: usize| centre[axis] >= self.lower[axis] - slack && centre[axis] <= self.upper[axis] + slack;
                 if (0..3).all(inside) {
-                    found.bricks[body].push(brick);
-                    found.volume += volume(&nodes);
+                    found.cells[number].push(cell);
+                    found.volume += body.mesh.cell_nodes(cell, positions).volume();
                 }
                 for axis in 0..3 {
                     least[axis] = least[axis].min(centre[axis]);
@@ -71,11 +71,17 @@ impl Region {
                 }
             }
         }
-        if found.bricks.iter().all(Vec::is_empty) {
+        if found.cells.iter().all(Vec::is_empty) {
             let value = format!("{:?} to {:?}", self.lower, self.upper);
-            let allowed = format!("a box that holds the centre of a brick; they lie between {least:?} and {most:?} mm");
+            let allowed = format!("a box that holds the centre of a cell; they lie between {least:?} and {most:?} mm");
             return Err(SceneError::out_of_range("objective.region", value, allowed));
         }
         Ok(found)
+    }
+
+    /// Whether a cell belongs to the body and the volume of the region.
+    fn may_hold(&self, number: usize, body: &Body, cell: usize) -> bool {
+        let name = &body.mesh.volumes()[body.mesh.volume_of(cell)];
+        self.body.is_none_or(|own| own == number) && self.volume.as_ref().is_none_or(|volume| volume == name)
     }
 }

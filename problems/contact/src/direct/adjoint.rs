@@ -1,8 +1,8 @@
 //! The adjoint of the condensed problem.
 //!
 //! ```text
-//! M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a):    Mᵀ (ψ; b) = (j; 0),    η = −Dᵀψ,    p_b = ∓C_b B_bᵀ η + N_b b
-//! dJ = −pᵀ (∂K u − ∂f) + ηᵀ ∂g,            J − J* = ψᵀ (λ − Π(λ + w)) + bᵀ (Rᵀλ − e) + O(|r|²)
+//! M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a):    Mᵀ (ψ; b) = (j; 0),    η = −Dᵀψ,    p_b = −C_b B_bᵀ η + N_b b
+//! dJ = −pᵀ (∂K u − ∂f) + terms of the rows,      J − J* = ψᵀ (λ − Π(λ + w)) + bᵀ (Rᵀλ − e) + O(|r|²)
 //! with l = ∂J/∂u (displacement_load.rs):   j − B C l̂ for j,   Rᵀ l̂ for 0,   p_b + C_b l̂_b for p_b
 //! ```
 //! Where the closed nodes leave a motion free, M is singular: a proximal spring regularises its factor, and refinement
@@ -11,15 +11,15 @@
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::newton::SPRINGS;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::add_scaled;
 use nalgebra::DVector;
 
 #[derive(Debug)]
 pub(super) struct CondensedAdjoint {
-    /// Contact displacements p of the lower body, unit of J per N.
-    pub(super) displacement: Vec<f64>,
+    /// Contact displacements p of every body, unit of J per N.
+    pub(super) displacements: Vec<Vec<f64>>,
     /// Packed η, unit of J per mm.
     pub(super) multipliers: Vec<f64>,
     /// Terms of J − J*, per row, then per motion.
@@ -38,7 +38,7 @@ impl CompliantContact {
         let (direction, resultant) = self.condensed_dual(direction, loads);
         let boundary = &self.problem.boundary;
         let (count, motions) = (self.row_count(), self.resultant.len());
-        let active = self.active_system(linearizations, 0.0, boundary.friction);
+        let active = self.active_system(linearizations, 0.0, Friction::Coulomb);
         let size = active.rows.len();
         let matrix = active.matrix.transpose().to_owned();
         let mut sprung = matrix.clone();
@@ -55,7 +55,7 @@ impl CompliantContact {
         psi[count..].copy_from_slice(&solution[size..]);
         let mut eta = vec![0.0; count];
         for (node, linearization) in boundary.points.iter().zip(linearizations) {
-            let block = linearization.derivative(node.row_count(), boundary.friction);
+            let block = linearization.derivative(node.row_count(), node.friction);
             for (i, coefficients) in block.iter().enumerate().take(node.row_count()) {
                 for (j, d) in coefficients.iter().enumerate().take(node.row_count()) {
                     eta[node.start + j] -= d * psi[node.start + i];
@@ -64,7 +64,7 @@ impl CompliantContact {
         }
         let (product, rigid) = (multiply(&self.compliance, &eta), multiply(&self.motions, &psi[count..]));
         for (node, _) in boundary.points.iter().zip(linearizations).filter(|(_, l)| **l == Linearization::Open) {
-            for row in node.start..node.start + node.row_count() {
+            for row in node.rows() {
                 psi[row] = direction[row] * self.load + product[row] - rigid[row];
             }
         }
@@ -72,11 +72,12 @@ impl CompliantContact {
         let error_terms = psi.iter().zip(&residual).map(|(psi, residual)| psi * residual).collect();
         eta.iter_mut().for_each(|eta| *eta /= self.unit * self.load);
         let own = self.own_amplitudes(&psi[count..], 1.0 / self.load);
-        let mut displacement = self.bodies[0].displacement(&eta, &own[0], false);
-        if let Some(load) = loads.first() {
-            add_scaled(&mut displacement, 1.0, &load.response);
+        let mut displacements: Vec<Vec<f64>> =
+            self.bodies.iter().zip(&own).map(|(body, own)| body.displacement(&eta, own, false)).collect();
+        for (displacement, load) in displacements.iter_mut().zip(loads) {
+            add_scaled(displacement, 1.0, &load.response);
         }
-        CondensedAdjoint { displacement, multipliers: eta, error_terms }
+        CondensedAdjoint { displacements, multipliers: eta, error_terms }
     }
 
     /// ∂J/∂λ with the displacements eliminated, packed, unit of J per N, and ∂J/∂a, dimensionless amplitudes.
@@ -86,9 +87,7 @@ impl CompliantContact {
             return (dual, vec![0.0; self.resultant.len()]);
         }
         for (body, load) in self.bodies.iter().zip(loads) {
-            for &(row, dof) in &body.rows {
-                dual[row] -= body.sign * load.response[dof];
-            }
+            body.rows.add_jumps(&load.response, -1.0, &mut dual);
         }
         let own = loads.iter().flat_map(|load| &load.resultants).map(|resultant| resultant * self.unit * self.load);
         let own: Vec<f64> = own.collect();

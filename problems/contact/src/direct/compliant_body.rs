@@ -1,15 +1,18 @@
 //! A condensed body as a compliance, with the rigid motions that its own supports leave free.
 //!
 //! ```text
-//! S u = f ∓ Bᵀλ   ⇔   u = C (f ∓ Bᵀλ) + N a,   Nᵀ (f ∓ Bᵀλ) = 0,   C = S⁺ = (S + s N Nᵀ)⁻¹ − N Nᵀ/s,   Nᵀ N = I
+//! S u = f − Bᵀλ   ⇔   u = C (f − Bᵀλ) + N a,   Nᵀ (f − Bᵀλ) = 0,   C = S⁺ = (S + s N Nᵀ)⁻¹ − N Nᵀ/s,   Nᵀ N = I
 //! ```
+//! B: the share of the body in the jumps of the packed rows, −1 times its directions for the upper body.
 
+use crate::body::Body;
 use crate::direct::condensation::CondensedBody;
-use crate::equilibrium::ContactBoundary;
-use crate::equilibrium::modes::OwnMotion;
+use crate::equilibrium::modes::{OwnMotion, RigidScene};
+use crate::equilibrium::{ContactBoundary, ContactRows};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::{add_scaled, dot, norm};
 use faer::Mat;
+use std::sync::Arc;
 
 /// A condensed body with its compliance.
 #[derive(Debug)]
@@ -21,29 +24,29 @@ pub struct CompliantBody {
     pub(super) motions: Vec<Vec<f64>>,
     /// Displacement of the contact dofs under the loads alone, C f, mm.
     pub(super) free: Vec<f64>,
-    /// 1 for the lower body, −1 for the upper one: its share in a jump.
-    pub(super) sign: f64,
-    /// (row, dof) of the packed rows that the body takes part in.
-    pub(super) rows: Vec<(usize, usize)>,
+}
+
+/// B of a body by rows: entries (contact dof, value); rows that it does not take part in are empty.
+#[derive(Debug)]
+pub struct BodyRows(Vec<Vec<(usize, f64)>>);
+
+/// A body of a shape with its share in the jumps.
+#[derive(Debug)]
+pub struct ContactBody {
+    pub(super) body: Arc<CompliantBody>,
+    pub(super) rows: BodyRows,
 }
 
 impl CompliantBody {
-    /// The compliance of a condensed body; `motions`: the rigid motions that its supports leave free, `held`: its held
-    /// contact dofs, `sign`: 1 for the lower body, −1 for the upper one. The condensed load takes over the resultants
-    /// of the loads, of which condensation keeps fewer digits.
-    pub fn new(
-        mut condensed: CondensedBody,
-        motions: Vec<OwnMotion>,
-        boundary: &ContactBoundary,
-        held: &[bool],
-        sign: f64,
-    ) -> Self {
-        let motions = orthonormal(motions, held);
-        for OwnMotion { contact, resultant } in &motions {
-            let lost = resultant - dot(contact, &condensed.load);
-            add_scaled(&mut condensed.load, lost, contact);
+    /// The compliance of a condensed body; the body at its positions is number `number` of a rigid scene. The condensed
+    /// load takes over the resultants of the loads, of which condensation keeps fewer digits.
+    pub fn new(mut condensed: CondensedBody, rigid: &RigidScene, number: usize, positions: &[[f64; 3]]) -> Self {
+        let motions = orthonormal(contact_motions(&condensed, rigid, number, positions));
+        for (motion, resultant) in &motions {
+            let lost = resultant - dot(motion, &condensed.load);
+            add_scaled(&mut condensed.load, lost, motion);
         }
-        let motions: Vec<Vec<f64>> = motions.into_iter().map(|motion| motion.contact).collect();
+        let motions: Vec<Vec<f64>> = motions.into_iter().map(|(motion, _)| motion).collect();
         let schur = &condensed.schur;
         let size = schur.nrows();
         let scale = (0..size).map(|dof| schur[(dof, dof)]).sum::<f64>() / size as f64;
@@ -59,68 +62,152 @@ impl CompliantBody {
                 add_scaled(compliance.col_as_slice_mut(j), -right / scale, motion);
             }
         }
-        let mut rows = Vec::with_capacity(boundary.row_count);
-        for (index, point) in boundary.points.iter().enumerate() {
-            rows.extend(point.rows_of(index).filter(|&(_, dof)| !held[dof]));
-        }
         let free = multiply(&compliance, &condensed.load);
-        Self { condensed, compliance, motions, free, sign, rows }
-    }
-
-    /// Forces on the contact dofs, N, of packed multipliers.
-    pub(super) fn contact_forces(&self, multipliers: &[f64]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.condensed.load.len()];
-        for &(row, dof) in &self.rows {
-            forces[dof] = -self.sign * multipliers[row];
-        }
-        forces
+        Self { condensed, compliance, motions, free }
     }
 
     /// Nᵀf of the loads, N.
     pub(super) fn resultants(&self) -> impl Iterator<Item = f64> + '_ {
         self.motions.iter().map(|motion| dot(motion, &self.condensed.load))
     }
+}
+
+impl BodyRows {
+    /// The rows of a shape on the contact dofs of a body.
+    pub fn new(number: usize, condensed: &CondensedBody, boundary: &ContactBoundary, rows: &ContactRows) -> Self {
+        let pattern = &condensed.pattern;
+        let mut all = Vec::with_capacity(boundary.row_count);
+        let mut index = 0;
+        for (point, node) in boundary.points.iter().zip(&rows.nodes) {
+            let side = point.sides.iter().find(|side| side.body == number);
+            for direction in &node.directions {
+                let Some(side) = side else {
+                    all.push(Vec::new());
+                    continue;
+                };
+                let turned = pattern.axes.turn_at(pattern.contact[index], *direction);
+                let entries = (0..3).map(|axis| (3 * index + axis, side.weight * turned[axis]));
+                all.push(entries.filter(|(dof, value)| *value != 0.0 && !pattern.holds(*dof)).collect());
+            }
+            index += usize::from(side.is_some());
+        }
+        Self(all)
+    }
+
+    /// Entries of a row.
+    pub(super) fn row(&self, row: usize) -> &[(usize, f64)] {
+        &self.0[row]
+    }
+
+    /// Adds B u to values over the packed rows.
+    pub(super) fn add_jumps(&self, u: &[f64], factor: f64, jumps: &mut [f64]) {
+        for (jump, entries) in jumps.iter_mut().zip(&self.0) {
+            *jump += factor * entries.iter().map(|(dof, value)| value * u[*dof]).sum::<f64>();
+        }
+    }
+
+    /// The forces −Bᵀλ on the contact dofs.
+    pub(super) fn forces(&self, multipliers: &[f64], dofs: usize) -> Vec<f64> {
+        let mut forces = vec![0.0; dofs];
+        for (multiplier, entries) in multipliers.iter().zip(&self.0) {
+            entries.iter().for_each(|(dof, value)| forces[*dof] -= value * multiplier);
+        }
+        forces
+    }
+
+    /// Adds B C Bᵀ.
+    pub(super) fn add_compliance(&self, compliance: &Mat<f64>, sum: &mut Mat<f64>) {
+        let mut product = vec![0.0; compliance.nrows()];
+        for (column, entries) in self.0.iter().enumerate() {
+            product.fill(0.0);
+            entries.iter().for_each(|(dof, value)| add_scaled(&mut product, *value, compliance.col_as_slice(*dof)));
+            self.add_jumps(&product, 1.0, sum.col_as_slice_mut(column));
+        }
+    }
+}
+
+impl ContactBody {
+    /// Forces on the contact dofs, N, of packed multipliers.
+    pub(super) fn contact_forces(&self, multipliers: &[f64]) -> Vec<f64> {
+        self.rows.forces(multipliers, self.body.free.len())
+    }
 
     /// Displacements of the contact dofs, mm, under packed multipliers and with given amplitudes of the free motions;
     /// with or without the loads.
     pub(super) fn displacement(&self, multipliers: &[f64], amplitudes: &[f64], loaded: bool) -> Vec<f64> {
-        let mut u = multiply(&self.compliance, &self.contact_forces(multipliers));
+        let mut u = multiply(&self.body.compliance, &self.contact_forces(multipliers));
         if loaded {
-            add_scaled(&mut u, 1.0, &self.free);
+            add_scaled(&mut u, 1.0, &self.body.free);
         }
-        for (motion, amplitude) in self.motions.iter().zip(amplitudes) {
+        for (motion, amplitude) in self.body.motions.iter().zip(amplitudes) {
             add_scaled(&mut u, *amplitude, motion);
         }
         u
     }
 
-    /// |Nᵀ(f ∓ Bᵀλ)|₂: the resultants that the forces leave along the free motions, N.
+    /// Displacements of the whole body along the axes under a load over it (0 at held dofs), from those of its contact
+    /// dofs and packed multipliers.
+    pub(super) fn extend_under(&self, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
+        let condensed = &self.body.condensed;
+        let mut u = condensed.extend(contact, &self.contact_forces(multipliers), load);
+        condensed.pattern.axes.turn_back(&mut u);
+        u
+    }
+
+    /// |Nᵀ(f − Bᵀλ)|₂: the resultants that the forces leave along the free motions, N.
     pub(super) fn imbalance(&self, multipliers: &[f64]) -> f64 {
         let mut force = self.contact_forces(multipliers);
-        add_scaled(&mut force, 1.0, &self.condensed.load);
-        norm(&self.motions.iter().map(|motion| dot(motion, &force)).collect::<Vec<f64>>())
+        add_scaled(&mut force, 1.0, &self.body.condensed.load);
+        norm(&self.body.motions.iter().map(|motion| dot(motion, &force)).collect::<Vec<f64>>())
+    }
+
+    /// C r̂ for packed multipliers, over the contact dofs, mm: how far one step of refinement moves them.
+    pub(super) fn refinement(&self, body: &Body, positions: &[[f64; 3]], multipliers: &[f64]) -> Vec<f64> {
+        let (forces, condensed) = (self.contact_forces(multipliers), &self.body.condensed);
+        let displacement = self.displacement(multipliers, &vec![0.0; self.body.motions.len()], true);
+        let u = condensed.extend(&displacement, &forces, &condensed.full_load);
+        let rest = condensed.pattern.unbalanced(body, positions, &u, condensed.full_force(&forces));
+        multiply(&self.body.compliance, condensed.condense_loads(rest).col_as_slice(0))
     }
 }
 
-/// Motions that are orthonormal over the contact dofs and vanish on the held ones.
-fn orthonormal(motions: Vec<OwnMotion>, held: &[bool]) -> Vec<OwnMotion> {
-    let mut basis: Vec<OwnMotion> = Vec::new();
-    for OwnMotion { contact: mut motion, mut resultant } in motions {
-        for (value, held) in motion.iter_mut().zip(held) {
-            *value = if *held { 0.0 } else { *value };
-        }
+/// The free motions of a body over its contact dofs, 0 at held ones, with the resultants of the loads.
+fn contact_motions(
+    condensed: &CondensedBody,
+    rigid: &RigidScene,
+    number: usize,
+    positions: &[[f64; 3]],
+) -> Vec<(Vec<f64>, f64)> {
+    let pattern = &condensed.pattern;
+    let motion = |OwnMotion { coefficients, resultant }: OwnMotion| {
+        let at = |&place: &usize| {
+            let point = positions[pattern.piece.nodes[place] as usize];
+            pattern.axes.turn_at(place, rigid.displacement(number, &coefficients, point))
+        };
+        let mut values: Vec<f64> = pattern.contact.iter().flat_map(at).collect();
+        let dofs = values.iter_mut().enumerate().filter(|(dof, _)| pattern.holds(*dof));
+        dofs.for_each(|(_, value)| *value = 0.0);
+        (values, resultant)
+    };
+    rigid.own_motions(number).into_iter().map(motion).collect()
+}
+
+/// Orthonormal motions with their resultants.
+fn orthonormal(motions: Vec<(Vec<f64>, f64)>) -> Vec<(Vec<f64>, f64)> {
+    let mut basis: Vec<(Vec<f64>, f64)> = Vec::new();
+    for (mut motion, mut resultant) in motions {
         // Twice, since once leaves rounding in the older directions.
         for _pass in 0..2 {
-            for older in &basis {
-                let share = dot(&older.contact, &motion);
-                add_scaled(&mut motion, -share, &older.contact);
-                resultant -= share * older.resultant;
+            for (older, of_older) in &basis {
+                let share = dot(older, &motion);
+                add_scaled(&mut motion, -share, older);
+                resultant -= share * of_older;
             }
             let length = norm(&motion);
             motion.iter_mut().for_each(|value| *value /= length);
             resultant /= length;
         }
-        basis.push(OwnMotion { contact: motion, resultant });
+        basis.push((motion, resultant));
     }
     basis
 }

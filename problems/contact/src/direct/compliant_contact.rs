@@ -6,8 +6,8 @@
 //! C is the sum of the bodies' compliances over the packed rows, R a the jumps of their free rigid motions. Motions
 //! that no contact node feels are left out: no force depends on them.
 
-use crate::direct::compliant_body::CompliantBody;
-use crate::equilibrium::ContactProblem;
+use crate::direct::compliant_body::ContactBody;
+use crate::equilibrium::{ContactProblem, ContactRows};
 use crate::equilibrium::law::{self, Linearization};
 use crate::linear::dense::multiply;
 use crate::linear::vector::{add_scaled, dot};
@@ -35,7 +35,9 @@ pub struct CompliantContact {
     pub load: f64,
     /// Unit of compliances, mm/N.
     pub unit: f64,
-    pub(super) bodies: Vec<Arc<CompliantBody>>,
+    pub(super) bodies: Vec<ContactBody>,
+    /// The contact rows of the shape.
+    pub(super) rows: Arc<ContactRows>,
     /// Where the bodies are.
     pub(super) placement: Placement,
     /// From the amplitudes of R to those of the bodies' own motions.
@@ -54,38 +56,32 @@ pub(super) struct Placement {
 }
 
 impl CompliantContact {
-    /// The problem of some bodies with given initial gaps, mm; `load`: unit of forces, N.
-    pub fn new(problem: Arc<ContactProblem>, bodies: Vec<Arc<CompliantBody>>, gaps: &[f64], load: f64) -> Self {
+    /// The problem of some bodies with given contact rows; `load`: unit of forces, N.
+    pub fn new(problem: Arc<ContactProblem>, bodies: Vec<ContactBody>, rows: Arc<ContactRows>, load: f64) -> Self {
         let boundary = &problem.boundary;
-        let rows = boundary.row_count;
-        let mut compliance = Mat::<f64>::zeros(rows, rows);
-        let mut constant = vec![0.0; rows];
-        for (point, gap) in boundary.points.iter().zip(gaps) {
+        let count = boundary.row_count;
+        let mut compliance = Mat::<f64>::zeros(count, count);
+        let mut constant = vec![0.0; count];
+        for (point, gap) in boundary.points.iter().zip(rows.gaps()) {
             constant[point.start] = -gap;
         }
-        for body in &bodies {
-            for &(column, other) in &body.rows {
-                for &(row, dof) in &body.rows {
-                    compliance[(row, column)] += body.compliance[(dof, other)];
-                }
-            }
-            for &(row, dof) in &body.rows {
-                constant[row] += body.sign * body.free[dof];
-            }
+        for ContactBody { body, rows } in &bodies {
+            rows.add_compliance(&body.compliance, &mut compliance);
+            rows.add_jumps(&body.free, 1.0, &mut constant);
         }
         let normals = boundary.points.iter().map(|point| compliance[(point.start, point.start)]);
         let unit = normals.sum::<f64>() / boundary.points.len() as f64;
-        for column in 0..rows {
+        for column in 0..count {
             compliance.col_as_slice_mut(column).iter_mut().for_each(|c| *c /= unit);
         }
         constant.iter_mut().for_each(|d| *d /= unit * load);
-        let [motions, basis, inverse_basis] = touched_motions(&bodies, rows);
-        let own: Vec<f64> = bodies.iter().flat_map(|body| body.resultants()).collect();
+        let [motions, basis, inverse_basis] = touched_motions(&bodies, count);
+        let own: Vec<f64> = bodies.iter().flat_map(|body| body.body.resultants()).collect();
         let resultant = (basis.transpose() * DVector::from_vec(own) / load).iter().copied().collect();
-        let motions = Mat::from_fn(rows, motions.ncols(), |i, k| motions[(i, k)]);
+        let motions = Mat::from_fn(count, motions.ncols(), |i, k| motions[(i, k)]);
         let offset = vec![0.0; motions.ncols()];
         let placement = Placement { constant, offset };
-        Self { placement, problem, compliance, motions, resultant, load, unit, bodies, basis, inverse_basis }
+        Self { placement, problem, compliance, motions, resultant, load, unit, bodies, rows, basis, inverse_basis }
     }
 
     /// Number of packed rows.
@@ -115,8 +111,8 @@ impl CompliantContact {
         let arguments: Vec<f64> = forces.iter().zip(&jumps).map(|(force, jump)| force + jump / (1.0 + delta)).collect();
         let mut residual = vec![0.0; self.row_count()];
         for node in &boundary.points {
-            let range = node.start..node.start + node.row_count();
-            law::project(&arguments[range.clone()], boundary.friction, &mut residual[range]);
+            let range = node.rows();
+            law::project(&arguments[range.clone()], node.friction, &mut residual[range]);
         }
         residual.iter_mut().zip(forces).for_each(|(projected, force)| *projected = force - *projected);
         for (column, load) in self.resultant.iter().enumerate() {
@@ -144,9 +140,8 @@ impl CompliantContact {
 
     /// Derivatives of Π selected at given arguments x.
     pub fn linearize(&self, arguments: &[f64]) -> Vec<Linearization> {
-        let boundary = &self.problem.boundary;
-        let at = |start: usize, count: usize| Linearization::at(&arguments[start..start + count], boundary.friction);
-        boundary.points.iter().map(|node| at(node.start, node.row_count())).collect()
+        let points = self.problem.boundary.points.iter();
+        points.map(|node| Linearization::at(&arguments[node.rows()], node.friction)).collect()
     }
 
     /// Amplitudes of the bodies' own motions, in mm for dimensionless amplitudes times `unit`.
@@ -154,7 +149,7 @@ impl CompliantContact {
         let scaled = DVector::from_iterator(amplitudes.len(), amplitudes.iter().map(|a| a * unit));
         let own = &self.basis * scaled;
         let mut own = own.iter().copied();
-        self.bodies.iter().map(|body| own.by_ref().take(body.motions.len()).collect()).collect()
+        self.bodies.iter().map(|body| own.by_ref().take(body.body.motions.len()).collect()).collect()
     }
 
     /// Resultants along R of those along the bodies' own motions.
@@ -179,14 +174,18 @@ impl CompliantContact {
         let mut forces = vec![0.0; self.row_count()];
         let mut own = Vec::new();
         let mut first = 0;
-        for body in &self.bodies {
+        for ContactBody { body, rows } in &self.bodies {
             let u = &displacements[first..first + body.condensed.load.len()];
             first += u.len();
             own.extend(body.motions.iter().map(|motion| dot(motion, u) / (self.unit * self.load)));
             let mut reaction = body.condensed.load.clone();
             add_scaled(&mut reaction, -1.0, &multiply(&body.condensed.schur, u));
-            for &(row, dof) in &body.rows {
-                forces[row] = body.sign * reaction[dof] / self.load;
+            for (row, force) in forces.iter_mut().enumerate() {
+                let entries = rows.row(row);
+                let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
+                if square > 0.0 {
+                    *force = entries.iter().map(|(dof, value)| value * reaction[*dof]).sum::<f64>() / (square * self.load);
+                }
             }
         }
         let amplitudes = &self.inverse_basis * DVector::from_vec(own);
@@ -197,14 +196,12 @@ impl CompliantContact {
 
 /// R with orthonormal columns, the map from its amplitudes to those of the bodies' own motions, and the map back.
 /// Singular values come from the triangular factor, which keeps the small ones.
-fn touched_motions(bodies: &[Arc<CompliantBody>], rows: usize) -> [DMatrix<f64>; 3] {
-    let columns = bodies.iter().map(|body| body.motions.len()).sum();
+fn touched_motions(bodies: &[ContactBody], rows: usize) -> [DMatrix<f64>; 3] {
+    let columns = bodies.iter().map(|body| body.body.motions.len()).sum();
     let mut motions = DMatrix::<f64>::zeros(rows, columns);
-    let own = bodies.iter().flat_map(|body| body.motions.iter().map(move |motion| (body, motion)));
-    for (column, (body, motion)) in own.enumerate() {
-        for &(row, dof) in &body.rows {
-            motions[(row, column)] = body.sign * motion[dof];
-        }
+    let own = bodies.iter().flat_map(|body| body.body.motions.iter().map(move |motion| (&body.rows, motion)));
+    for (mut column, (rows, motion)) in motions.column_iter_mut().zip(own) {
+        rows.add_jumps(motion, 1.0, column.as_mut_slice());
     }
     let none = || [DMatrix::zeros(rows, 0), DMatrix::zeros(columns, 0), DMatrix::zeros(0, columns)];
     if columns == 0 {

@@ -3,16 +3,15 @@
 //! ```text
 //! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f̂_c = (S + σ I) x_c with (K + σ I_c) x = f
 //! ```
-//! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
+//! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly. All is
+//! computed in the coordinates of [`NodalAxes`].
 
-use crate::body::local_pattern::LocalPattern;
-use crate::body::mesh::{Block, Grid};
-use crate::body::shape_load::nodal_loads;
+use crate::body::loads::piece_loads;
+use crate::body::{Body, NodalAxes, Piece};
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::add_scaled;
-use crate::scene::BodyScene;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use std::sync::Arc;
@@ -20,17 +19,17 @@ use std::sync::Arc;
 /// What all shapes of a body share.
 #[derive(Debug)]
 pub struct CondensationPattern {
-    /// Sparsity and assembly of the body's stiffness matrix.
-    pub(super) pattern: LocalPattern,
+    /// The whole body.
+    pub(super) piece: Piece,
+    pub(super) axes: NodalAxes,
     symbolic: Arc<SymbolicFactor>,
-    /// First dof of every contact node.
-    contact: Vec<usize>,
-    /// Whether supports hold a dof of the body.
-    pub(super) held: Vec<bool>,
+    /// The contact nodes by their places in the piece.
+    pub(super) contact: Vec<usize>,
 }
 
 #[derive(Debug)]
 pub struct CondensedBody {
+    pub(super) pattern: Arc<CondensationPattern>,
     /// S over contact dofs 3·node + component, N/mm.
     pub(crate) schur: Mat<f64>,
     /// f̂_c, the loads condensed onto the contact dofs, N.
@@ -38,35 +37,30 @@ pub struct CondensedBody {
     factor: NumericFactor,
     /// The loads over the whole body, N; 0 at held dofs.
     pub(super) full_load: Vec<f64>,
-    /// First dof of every contact node.
-    pub(super) contact: Vec<usize>,
     shift: f64,
 }
 
 impl CondensationPattern {
-    /// The pattern of a body whose contact nodes lie in layer `layer` of its grid.
+    /// The pattern of a body with given contact nodes.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the analysis fails.
-    pub fn new(grid: &Grid, scene: &BodyScene, layer: usize) -> Result<Self, ContactError> {
-        let pattern = LocalPattern::new(grid.cells, &[]);
-        let nodes: Vec<usize> = grid.columns().map(|(i, j)| grid.node([i, j, layer])).collect();
-        let symbolic = pattern.symbolic(&nodes)?;
-        let mut held = Vec::with_capacity(3 * grid.node_count());
-        for node in 0..grid.node_count() {
-            held.extend(scene.held(grid, pattern.shape.local_position(node)));
-        }
-        Ok(Self { pattern, symbolic, contact: nodes.into_iter().map(|node| 3 * node).collect(), held })
+    pub fn new(body: &Body, contact: &[u32]) -> Result<Self, ContactError> {
+        let piece = body.whole();
+        let contact: Vec<usize> = contact.iter().filter_map(|&node| piece.local(node)).collect();
+        let symbolic = piece.pattern.symbolic(&contact)?;
+        Ok(Self { axes: NodalAxes::new(body, &piece), piece, symbolic, contact })
     }
 
     /// Condenses one shape.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite.
-    pub fn condense(&self, block: &Block, scene: &BodyScene) -> Result<CondensedBody, ContactError> {
-        let mut values = self.pattern.assemble(&scene.material, |brick| block.brick(brick));
-        let mut full_load = nodal_loads(block, &self.pattern.shape, &scene.loads);
-        let shift = self.impose(&mut values, &mut full_load);
+    pub fn condense(self: &Arc<Self>, body: &Body, positions: &[[f64; 3]]) -> Result<CondensedBody, ContactError> {
+        let mut values = self.stiffness(body, positions);
+        let mut full_load = piece_loads(body, &self.piece, positions);
+        self.axes.free_forces(&mut full_load);
+        let shift = self.impose(&mut values);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
         let lower = factor.trailing_block(size);
@@ -84,33 +78,56 @@ impl CondensationPattern {
         );
         let mut solution = full_load.clone();
         factor.solve_in_place(&mut solution);
-        let load = multiply(&schur, &contact_part(&self.contact, &solution));
+        let load = multiply(&schur, &self.contact_part(&solution));
         for dof in 0..size {
             schur[(dof, dof)] -= shift;
         }
-        Ok(CondensedBody { schur, load, factor, full_load, contact: self.contact.clone(), shift })
+        Ok(CondensedBody { pattern: Arc::clone(self), schur, load, factor, full_load, shift })
+    }
+
+    /// K in the coordinates of the nodes.
+    fn stiffness(&self, body: &Body, positions: &[[f64; 3]]) -> Vec<f64> {
+        let mut values = self.piece.assemble(body, positions, |material| *material);
+        self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
+        values
     }
 
     /// Decouples held dofs and adds the shift; returns the shift.
-    fn impose(&self, values: &mut [f64], load: &mut [f64]) -> f64 {
-        let lower = &self.pattern.pattern;
+    fn impose(&self, values: &mut [f64]) -> f64 {
+        let (lower, held) = (&self.piece.pattern.lower, &self.axes.held);
         for column in 0..lower.dimension() {
             for position in lower.starts()[column] + 1..lower.starts()[column + 1] {
-                if self.held[column] || self.held[lower.rows()[position]] {
+                if held[column] || held[lower.rows()[position]] {
                     values[position] = 0.0;
                 }
             }
-            if self.held[column] {
-                load[column] = 0.0;
-            }
         }
         let diagonal = |dof: usize| lower.starts()[dof];
-        let dofs = || self.contact.iter().flat_map(|&first| first..first + 3);
+        let dofs = || self.contact.iter().flat_map(|&node| 3 * node..3 * node + 3);
         let shift = dofs().map(|dof| values[diagonal(dof)]).sum::<f64>() / (3 * self.contact.len()) as f64;
         for dof in dofs() {
             values[diagonal(dof)] += shift;
         }
         shift
+    }
+
+    /// f − K u, N, for displacements u and forces f in the coordinates of the nodes; 0 at held dofs, which supports carry.
+    pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], u: &[f64], mut force: Vec<f64>) -> Mat<f64> {
+        let values = self.stiffness(body, positions);
+        let mut image = vec![0.0; u.len()];
+        self.piece.pattern.lower.multiply(&values, u, &mut image);
+        add_scaled(&mut force, -1.0, &image);
+        Mat::from_fn(force.len(), 1, |dof, _| if self.axes.held[dof] { 0.0 } else { force[dof] })
+    }
+
+    /// The entries of a vector over the body that belong to the contact nodes.
+    pub(super) fn contact_part(&self, values: &[f64]) -> Vec<f64> {
+        self.contact.iter().flat_map(|&node| values[3 * node..3 * node + 3].iter().copied()).collect()
+    }
+
+    /// Whether supports hold a contact dof.
+    pub(super) fn holds(&self, dof: usize) -> bool {
+        self.axes.held[3 * self.contact[dof / 3] + dof % 3]
     }
 }
 
@@ -122,18 +139,12 @@ impl CondensedBody {
         displacement
     }
 
-    /// What forces on the whole body, N, one column per load case, put on the contact dofs, N; held dofs do not count.
-    pub fn condense_loads(&self, mut forces: Mat<f64>, held: &[bool]) -> Mat<f64> {
-        for column in 0..forces.ncols() {
-            for (force, _) in forces.col_as_slice_mut(column).iter_mut().zip(held).filter(|(_, held)| **held) {
-                *force = 0.0;
-            }
-        }
+    /// What forces on the whole body, N, 0 at held dofs, one column per load case, put on the contact dofs, N.
+    pub fn condense_loads(&self, mut forces: Mat<f64>) -> Mat<f64> {
         self.factor.solve_columns_in_place(&mut forces);
-        let size = self.load.len();
-        let mut loads = Mat::<f64>::zeros(size, forces.ncols());
+        let mut loads = Mat::<f64>::zeros(self.load.len(), forces.ncols());
         for column in 0..forces.ncols() {
-            let contact = contact_part(&self.contact, forces.col_as_slice(column));
+            let contact = self.pattern.contact_part(forces.col_as_slice(column));
             let mut load = multiply(&self.schur, &contact);
             add_scaled(&mut load, self.shift, &contact);
             loads.col_as_slice_mut(column).copy_from_slice(&load);
@@ -142,19 +153,24 @@ impl CondensedBody {
     }
 
     /// Extends contact displacements to the body under `load` (0 at held dofs); `forces` act on the contact dofs.
-    pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], load: &[f64]) -> Vec<f64> {
+    pub(super) fn extend(&self, contact_displacement: &[f64], forces: &[f64], load: &[f64]) -> Vec<f64> {
         let mut u = load.to_vec();
-        for (node, &first) in self.contact.iter().enumerate() {
+        for (index, &node) in self.pattern.contact.iter().enumerate() {
             for component in 0..3 {
-                let dof = 3 * node + component;
-                u[first + component] += forces[dof] + self.shift * contact_displacement[dof];
+                let dof = 3 * index + component;
+                u[3 * node + component] += forces[dof] + self.shift * contact_displacement[dof];
             }
         }
         self.factor.solve_in_place(&mut u);
         u
     }
-}
 
-fn contact_part(contact: &[usize], values: &[f64]) -> Vec<f64> {
-    contact.iter().flat_map(|&first| values[first..first + 3].iter().copied()).collect()
+    /// The loads and forces on the contact dofs, N, over the whole body.
+    pub(super) fn full_force(&self, forces: &[f64]) -> Vec<f64> {
+        let mut full = self.full_load.clone();
+        for (&node, force) in self.pattern.contact.iter().zip(forces.chunks_exact(3)) {
+            add_scaled(&mut full[3 * node..3 * node + 3], 1.0, force);
+        }
+        full
+    }
 }

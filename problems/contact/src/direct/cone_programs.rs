@@ -91,10 +91,10 @@ impl CompliantContact {
             return None;
         }
         let points = boundary.points.iter();
-        let cones = points.map(|point| Cone { first: point.start, size: point.row_count(), slope: boundary.friction });
+        let cones = points.map(|point| Cone { first: point.start, size: point.row_count(), slope: point.friction });
         let mut linear: Vec<f64> = self.constant().iter().map(|d| -d).collect();
         for (point, slip) in boundary.points.iter().zip(slips) {
-            linear[point.start] += boundary.friction * slip;
+            linear[point.start] += point.friction * slip;
         }
         let program = ConeProgram {
             hessian: &self.compliance,

@@ -1,7 +1,7 @@
 //! Direct condensation onto the contact nodes: an independent path, and the one that finds loosely held equilibria.
 //!
 //! ```text
-//! S u_c = f̂_c − λ,   S = K_cc − K_ci K_ii⁻¹ K_ic,   f̂_c = f_c − K_ci K_ii⁻¹ f_i           (per body, whole and untorn)
+//! S u_c = f̂_c − Bᵀλ,   S = K_cc − K_ci K_ii⁻¹ K_ic,   f̂_c = f_c − K_ci K_ii⁻¹ f_i           (per body, whole and untorn)
 //! ```
 //! The solution uses nothing of total FETI: neither its constraint rows, nor its coarse space, nor its Krylov methods.
 
@@ -17,6 +17,7 @@ mod newton;
 mod recovery;
 #[cfg(feature = "interior-point")]
 mod resistance;
+mod shape;
 mod solver;
 mod tangents;
 

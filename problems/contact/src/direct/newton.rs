@@ -12,7 +12,7 @@
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::cone_programs::Programs;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::equilibrium::{Stage, Work};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::norm;
@@ -221,18 +221,18 @@ impl CompliantContact {
         let mut step = vec![0.0; residual.len()];
         for (node, linearization) in boundary.points.iter().zip(linearizations) {
             if *linearization == Linearization::Open {
-                let range = node.start..node.start + node.row_count();
+                let range = node.rows();
                 step[range.clone()].copy_from_slice(&residual[range]);
             }
         }
         let product = multiply(&self.compliance, &step[..count]);
-        let mut active = self.active_system(linearizations, problem.delta, boundary.friction);
+        let mut active = self.active_system(linearizations, problem.delta, Friction::Coulomb);
         let mut right: Vec<f64> = Vec::with_capacity(active.matrix.nrows());
         for (node, linearization) in boundary.points.iter().zip(linearizations) {
             if *linearization == Linearization::Open {
                 continue;
             }
-            let block = linearization.derivative(node.row_count(), boundary.friction);
+            let block = linearization.derivative(node.row_count(), node.friction);
             right.extend((0..node.row_count()).map(|i| {
                 let open: f64 = (0..node.row_count()).map(|j| block[i][j] * product[node.start + j]).sum();
                 residual[node.start + i] - rho * open
@@ -251,19 +251,23 @@ impl CompliantContact {
         step
     }
 
-    /// The derivative over the rows of the nodes that are not open, then the motions; `friction`: 𝓕 for Coulomb's law,
-    /// 0 for slip bounds that do not follow λ_N (Tresca).
-    pub(super) fn active_system(&self, linearizations: &[Linearization], delta: f64, friction: f64) -> ActiveSystem {
+    /// The derivative over the rows of the nodes that are not open, then the motions.
+    pub(super) fn active_system(
+        &self,
+        linearizations: &[Linearization],
+        delta: f64,
+        friction: Friction,
+    ) -> ActiveSystem {
         let points = || self.problem.boundary.points.iter().zip(linearizations);
         let closed = || points().filter(|(_, linearization)| **linearization != Linearization::Open);
-        let rows: Vec<usize> = closed().flat_map(|(node, _)| node.start..node.start + node.row_count()).collect();
+        let rows: Vec<usize> = closed().flat_map(|(node, _)| node.rows()).collect();
         let (count, motions) = (rows.len(), self.resultant.len());
         let rho = 1.0 / (1.0 + delta);
         let mut matrix = Mat::<f64>::zeros(count + motions, count + motions);
         let mut first = 0;
         for (node, linearization) in closed() {
             let size = node.row_count();
-            let block = linearization.derivative(size, friction);
+            let block = linearization.derivative(size, friction.of(node));
             for (i, coefficients) in block.iter().enumerate().take(size) {
                 matrix[(first + i, first + i)] += 1.0;
                 for (j, &d) in coefficients.iter().enumerate().take(size).filter(|(_, d)| **d != 0.0) {

@@ -1,49 +1,40 @@
 //! Displacements inside the condensed bodies.
 
-use crate::body::mesh::Block;
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::equilibrium::SolvedBody;
 use crate::error::ContactError;
+use std::sync::Arc;
 
 impl DirectSolver {
     /// All bodies of a solved shape, lower first. Nothing is torn: each body is one subdomain.
     ///
     /// # Errors
-    /// [`ContactError::ForeignState`] for a state of another mesh, [`ContactError::InvertedElement`] never for a solved
-    /// one.
+    /// [`ContactError::ForeignState`] for a state of another mesh.
     pub(super) fn whole_bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
         self.check(state)?;
-        let blocks: Vec<Block> = std::iter::once(state.block.clone()).chain(self.problem.upper_block()?).collect();
-        Ok(blocks
-            .into_iter()
-            .enumerate()
-            .map(|(body, block)| SolvedBody {
-                displacement: state.displacement(body).chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect(),
-                gluing_defect: 0.0,
-                subdomains: vec![body; block.grid.brick_count()],
-                block,
-            })
-            .collect())
+        let bodies = self.problem.bodies.iter().enumerate();
+        let solved = bodies.map(|(number, body)| SolvedBody {
+            mesh: Arc::clone(&body.mesh),
+            positions: Arc::clone(&state.positions[number]),
+            displacement: body.extended(&self.patterns[number].piece, state.displacement(number)),
+            gluing_defect: 0.0,
+            subdomains: vec![number; body.mesh.cell_count()],
+        });
+        Ok(solved.collect())
     }
 }
 
 impl DirectState {
-    /// Displacements of a whole body of the state. They are solved for when they are first asked for, and kept: fields,
-    /// adjoint and tangents need the same ones.
-    pub(super) fn displacement(&self, body: usize) -> &[f64] {
-        self.displacements[body].get_or_init(|| {
-            let size = 3 * self.contact.problem.boundary.points.len();
-            let contact = &self.solution.displacement[size * body..size * (body + 1)];
-            let load = &self.contact.bodies[body].condensed.full_load;
-            self.extend_under(body, contact, &self.solution.forces, load)
+    /// Displacements over the dofs of a whole body of the state, along the axes. They are solved for when they are first
+    /// asked for, and kept: fields, adjoint and tangents need the same ones.
+    pub(super) fn displacement(&self, number: usize) -> &[f64] {
+        self.displacements[number].get_or_init(|| {
+            let sizes = self.contact.bodies.iter().map(|body| body.body.free.len());
+            let first: usize = sizes.take(number).sum();
+            let body = &self.contact.bodies[number];
+            let contact = &self.solution.displacement[first..first + body.body.free.len()];
+            body.extend_under(contact, &self.solution.forces, &body.body.condensed.full_load)
         })
-    }
-
-    /// Displacements of a whole body under a load over it, from those of its contact nodes and packed multipliers,
-    /// which push the lower body (0) down and the upper one (1) up.
-    pub(super) fn extend_under(&self, body: usize, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
-        let body = &self.contact.bodies[body];
-        body.condensed.extend(contact, &body.contact_forces(multipliers), load)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! λ in the friction cones,   Rᵀ λ = e,   λ_Nᵀ w_N = 0   ⇒   q(λ) := λ_Nᵀ (C λ)_N − d_Nᵀ λ_N = 0
-//! T ≥ 0 entry by entry       ⇒   λᵀ M λ ≤ d_Nᵀ λ_N,   λᵀ M λ := λ_Nᵀ (C λ)_N + Σ T_ij (λ_T,i·λ_T,j − 𝓕² λ_N,i λ_N,j)
+//! T ≥ 0 entry by entry       ⇒   λᵀ M λ ≤ d_Nᵀ λ_N,   λᵀ M λ := λ_Nᵀ (C λ)_N + Σ T_ij (λ_T,i·λ_T,j − 𝓕_i 𝓕_j λ_N,i λ_N,j)
 //! 2 M v − d_N − R y in the dual cones   ⇒   eᵀ y ≤ vᵀ M v
 //! ```
 //! The implications hold at every equilibrium, provided that no free motion moves contact nodes along their normals
@@ -12,6 +12,7 @@
 //! is computed again from C, R, d and e.
 
 use crate::direct::compliant_contact::CompliantContact;
+use crate::equilibrium::{ContactPoint, NodeRows};
 use crate::error::ContactError;
 use crate::linear::dense::{DenseCholesky, multiply};
 use crate::linear::vector::{add_scaled, dot};
@@ -22,7 +23,7 @@ use faer::Mat;
 const TANGENTIAL: f64 = 1e-12;
 /// Share of the largest row sum of M by which M must be definite: condensation may lose as much.
 const DEFINITE: f64 = 1e-8;
-/// Shares 𝓕²T/C_NN⁺ that are tried until M is positive definite.
+/// Shares 𝓕_i 𝓕_j T_ij/C_NN⁺ that are tried until M is positive definite.
 const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
 /// Largest share of the resultant that friction may build up in a proof.
 const MAX_SHARE: f64 = 0.999;
@@ -95,28 +96,28 @@ impl CompliantContact {
     }
 
     /// The slip of every node in a motion.
-    fn slips(&self, motion: &[f64]) -> Vec<[f64; 2]> {
+    fn slips(&self, motion: &[f64]) -> Vec<[f64; 3]> {
         let jumps = multiply(&self.motions, motion);
-        let mut slips = vec![[0.0; 2]; self.problem.boundary.points.len()];
-        for (slip, point) in slips.iter_mut().zip(&self.problem.boundary.points) {
-            for (offset, &tangent) in point.tangents.iter().enumerate() {
-                slip[tangent] = jumps[point.start + 1 + offset];
-            }
-        }
-        slips
+        let slip = |(point, node): (&ContactPoint, &NodeRows)| {
+            let parts = || node.directions[1..].iter().zip(&jumps[point.start + 1..]);
+            std::array::from_fn(|axis| parts().map(|(tangent, jump)| tangent[axis] * jump).sum())
+        };
+        self.problem.boundary.points.iter().zip(&self.rows.nodes).map(slip).collect()
     }
 
     /// The parts of a motion that make up most of its slip.
     fn in_words(&self, motion: &[f64]) -> String {
         let slips = self.slips(motion);
         let count = slips.len() as f64;
-        let mean = [0, 1].map(|axis| slips.iter().map(|slip| slip[axis]).sum::<f64>() / count);
-        let turning = slips.iter().map(|slip| (slip[0] - mean[0]).powi(2) + (slip[1] - mean[1]).powi(2)).sum::<f64>();
-        let sliding = format!("sliding along ({:.2}, {:.2}, 0)", mean[0], mean[1]);
-        match (mean[0].hypot(mean[1]) > 0.3, (turning / count).sqrt() > 0.3) {
-            (true, true) => format!("{sliding} with turning about x3"),
+        let mean: [f64; 3] = std::array::from_fn(|axis| slips.iter().map(|slip| slip[axis]).sum::<f64>() / count);
+        let turning: f64 = slips.iter().map(|slip| square(std::array::from_fn(|axis| slip[axis] - mean[axis]))).sum();
+        let [x1, x2, x3] = mean.map(|part| part + 0.0);
+        let sliding = format!("sliding along ({x1:.2}, {x2:.2}, {x3:.2})");
+        let turning = (turning / count).sqrt() > 0.3;
+        match (square(mean).sqrt() > 0.3, turning) {
+            (true, true) => format!("{sliding} with turning on the contact surface"),
             (true, false) => sliding,
-            _ => "turning about x3".into(),
+            _ => "turning on the contact surface".into(),
         }
     }
 }
@@ -147,7 +148,7 @@ impl<'a> Bound<'a> {
     fn at(&self, share: f64) -> Option<Resistance> {
         let boundary = &self.contact.problem.boundary;
         let cones = boundary.points.iter();
-        let cones = cones.map(|point| Cone { first: point.start, size: point.row_count(), slope: boundary.friction });
+        let cones = cones.map(|point| Cone { first: point.start, size: point.row_count(), slope: point.friction });
         let program = ConeProgram {
             hessian: &self.hessian,
             linear: self.constant.iter().map(|d| -d).collect(),
@@ -167,9 +168,9 @@ impl<'a> Bound<'a> {
         let missing = |v: &[f64]| {
             let product = multiply(&self.hessian, v);
             let rest = |row: usize| product[row] - self.constant[row] - driven[row];
-            let outside = |point: &crate::equilibrium::ContactPoint| {
+            let outside = |point: &ContactPoint| {
                 let tangential = point.rows().skip(1).map(rest).fold(0.0, f64::hypot);
-                let outside = boundary.friction * tangential - rest(point.start);
+                let outside = point.friction * tangential - rest(point.start);
                 if outside.is_nan() { f64::INFINITY } else { outside }
             };
             boundary.points.iter().map(outside).fold(f64::NEG_INFINITY, f64::max)
@@ -183,7 +184,7 @@ impl<'a> Bound<'a> {
         self.factor.solve_upper_in_place(&mut h);
         let length = 2.0 * (missing(&v).max(0.0) + ROUNDING * sizes(&v));
         add_scaled(&mut v, length, &h);
-        let squares = contact.slips(motion).iter().map(|slip| slip[0].powi(2) + slip[1].powi(2)).sum::<f64>();
+        let squares: f64 = contact.slips(motion).into_iter().map(square).sum();
         let slip = (squares / boundary.points.len() as f64).sqrt();
         let work = dot(&contact.resultant, motion);
         let pushed = work > LEAST_WORK * largest(motion);
@@ -196,6 +197,11 @@ impl<'a> Bound<'a> {
     }
 }
 
+/// The square of the length of a vector.
+fn square(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum()
+}
+
 /// Whether a compliance is symmetric, which its factorisation does not enforce, far beyond the margin of the proof.
 fn is_accurate(compliance: &Mat<f64>) -> bool {
     let pairs = || (0..compliance.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j)));
@@ -203,21 +209,27 @@ fn is_accurate(compliance: &Mat<f64>) -> bool {
     pairs().all(|(i, j)| (compliance[(i, j)] - compliance[(j, i)]).abs() <= LARGEST_SKEW * largest)
 }
 
-/// 2 M with T = share·C_NN⁺/𝓕², C_NN⁺ the positive entries of C_NN.
+/// 2 M with T_ij = share·C_NN⁺/(𝓕_i 𝓕_j), C_NN⁺ the positive entries of C_NN.
 fn hessian(contact: &CompliantContact, share: f64) -> Mat<f64> {
     let (boundary, compliance) = (&contact.problem.boundary, &contact.compliance);
     let mut hessian = Mat::<f64>::zeros(boundary.row_count, boundary.row_count);
-    for first in &boundary.points {
-        for second in &boundary.points {
+    // Where 𝓕 is 0, λ_T is 0, and any other coefficient bounds it as well.
+    let largest = boundary.points.iter().map(|point| point.friction).fold(0.0, f64::max);
+    let friction = |point: &ContactPoint| if point.friction > 0.0 { point.friction } else { largest };
+    let nodes = || boundary.points.iter().zip(&contact.rows.nodes);
+    for (first, of_first) in nodes() {
+        for (second, of_second) in nodes() {
             let (i, j) = (first.start, second.start);
             let normal = 0.5 * (compliance[(i, j)] + compliance[(j, i)]);
             let weight = share * normal.max(0.0);
             hessian[(i, j)] = 2.0 * (normal - weight);
-            for (a, &axis) in first.tangents.iter().enumerate() {
+            let weight = 2.0 * weight / (friction(first) * friction(second));
+            for (a, tangent) in of_first.directions[1..].iter().enumerate() {
                 hessian[(i + 1 + a, j)] = compliance[(j, i + 1 + a)];
                 hessian[(j, i + 1 + a)] = compliance[(j, i + 1 + a)];
-                if let Some(b) = second.tangents.iter().position(|&other| other == axis) {
-                    hessian[(i + 1 + a, j + 1 + b)] = 2.0 * weight / boundary.friction.powi(2);
+                for (b, other) in of_second.directions[1..].iter().enumerate() {
+                    let cosine: f64 = (0..3).map(|axis| tangent[axis] * other[axis]).sum();
+                    hessian[(i + 1 + a, j + 1 + b)] = weight * cosine;
                 }
             }
         }

@@ -1,26 +1,20 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
-use crate::body::mesh::{Block, Subdomain};
-use crate::body::shape_force::shape_forces;
-use crate::body::shape_sensitivity::column_sensitivities;
-use crate::direct::compliant_body::CompliantBody;
+use crate::direct::compliant_body::{BodyRows, CompliantBody, ContactBody};
 use crate::direct::compliant_contact::CompliantContact;
-use crate::direct::condensation::{CondensationPattern, CondensedBody};
+use crate::direct::condensation::CondensationPattern;
 use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::newton::{FLOOR_REACHED, Reached};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
-use crate::equilibrium::modes::RigidScene;
 use crate::equilibrium::{
-    Configuration, ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
-    Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents, ValueError, Work,
+    Configuration, ContactBoundary, ContactForces, ContactPoint, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
+    Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
-use crate::scene::BodyScene;
 use crate::solvers::SolverKind;
 use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
-use faer::Mat;
 use nonsmooth::interruption::interrupted;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
@@ -36,22 +30,20 @@ const BY_PROGRAMS: &str =
 #[derive(Debug)]
 pub struct DirectSolver {
     pub(crate) problem: Arc<ContactProblem>,
-    lower: CondensationPattern,
-    upper: Option<CondensationPattern>,
-    fixed: OnceLock<Arc<CompliantBody>>,
-    /// Held contact dofs, per body.
-    pub(super) held: Vec<Vec<bool>>,
+    pub(super) patterns: Vec<Arc<CondensationPattern>>,
+    /// The bodies of fixed shape.
+    fixed: OnceLock<Vec<Arc<CompliantBody>>>,
 }
 
 /// A solved shape with all that its coderivative needs.
 #[derive(Debug)]
 pub struct DirectState {
-    pub(super) block: Block,
+    pub(super) positions: Positions,
     pub(super) contact: CompliantContact,
     pub(super) solution: CondensedSolution,
     /// Force that residuals are relative to, N; zero for bodies at rest.
     load: f64,
-    /// Displacements of the whole bodies, once they have been asked for.
+    /// Displacements over the dofs of the bodies, once they have been asked for.
     pub(super) displacements: Vec<OnceLock<Vec<f64>>>,
 }
 
@@ -72,17 +64,13 @@ impl DirectSolver {
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(problem: Arc<ContactProblem>) -> Result<Self, ContactError> {
-        let (scene, grid) = (&problem.scene, &problem.grid);
-        let lower = CondensationPattern::new(grid, &scene.lower, grid.cells[2])?;
-        let upper = match &scene.upper {
-            Some(upper) => Some(CondensationPattern::new(grid, &upper.body, 0)?),
-            None => None,
+        let pattern = |(number, body)| {
+            let sides = problem.boundary.points.iter().flat_map(|point| &point.sides);
+            let contact: Vec<u32> = sides.filter(|side| side.body == number).map(|side| side.node).collect();
+            Ok(Arc::new(CondensationPattern::new(body, &contact)?))
         };
-        let held = |(scene, layer): (&BodyScene, usize)| {
-            grid.columns().flat_map(|(i, j)| scene.held(grid, [i, j, layer])).collect()
-        };
-        let held = problem.bodies().zip([grid.cells[2], 0]).map(held).collect();
-        Ok(Self { problem, lower, upper, fixed: OnceLock::new(), held })
+        let patterns = problem.bodies.iter().enumerate().map(pattern).collect::<Result<_, ContactError>>()?;
+        Ok(Self { problem, patterns, fixed: OnceLock::new() })
     }
 
     /// The contact problem in the forces of given controls: the data of the state, for other methods.
@@ -93,36 +81,36 @@ impl DirectSolver {
         Ok(self.condense(Configuration::new(&self.problem, controls)?)?.0)
     }
 
-    /// Condenses all bodies of a shape; also its lower block, the load (zero at rest) and the number of factorisations.
-    fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Block, f64, usize), ContactError> {
+    /// Condenses all bodies of a shape; also the positions of its nodes, the load (zero at rest) and the number of
+    /// factorisations.
+    fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Positions, f64, usize), ContactError> {
         Stage::Factorization.enter()?;
-        let lower = self.lower.condense(&configuration.blocks[0], &self.problem.scene.lower)?;
-        let lower = Arc::new(self.compliant(lower, &configuration.rigid, 0));
-        let (upper, factorizations) = self.upper_body(&configuration)?;
-        let load = configuration.load(contact_stiffness(&lower, upper.as_deref()));
-        let bodies = std::iter::once(lower).chain(upper).collect();
-        let unit = if load > 0.0 { load } else { 1.0 };
-        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, &configuration.gaps, unit);
-        let mut blocks = configuration.blocks;
-        Ok((contact, blocks.swap_remove(0), load, 1 + factorizations))
-    }
-
-    fn compliant(&self, condensed: CondensedBody, rigid: &RigidScene, body: usize) -> CompliantBody {
-        let sign = if body == 0 { 1.0 } else { -1.0 };
-        CompliantBody::new(condensed, rigid.own_motions(body), &self.problem.boundary, &self.held[body], sign)
-    }
-
-    /// The upper body, which keeps its shape: it is factored at the first call and shared afterwards. Also the number
-    /// of factorisations done.
-    fn upper_body(&self, configuration: &Configuration) -> Result<(Option<Arc<CompliantBody>>, usize), ContactError> {
-        let (Some(pattern), Some(scene)) = (&self.upper, &self.problem.scene.upper) else { return Ok((None, 0)) };
-        if let Some(body) = self.fixed.get() {
-            return Ok((Some(Arc::clone(body)), 0));
+        let condense = |number: usize| -> Result<Arc<CompliantBody>, ContactError> {
+            let positions = &configuration.positions[number];
+            let condensed = self.patterns[number].condense(&self.problem.bodies[number], positions)?;
+            Ok(Arc::new(CompliantBody::new(condensed, &configuration.rigid, number, positions)))
+        };
+        let lower = condense(0)?;
+        let mut factorizations = 1;
+        if self.fixed.get().is_none() {
+            // These bodies keep their shape: they are factored at the first call and shared afterwards.
+            let bodies = (1..self.patterns.len()).map(condense).collect::<Result<Vec<_>, _>>()?;
+            factorizations += bodies.len();
+            // Another thread may have been first; its factors are the same.
+            let _ = self.fixed.set(bodies);
         }
-        let condensed = pattern.condense(&configuration.blocks[1], &scene.body)?;
-        let body = Arc::new(self.compliant(condensed, &configuration.rigid, 1));
-        // Another thread may have been first; its factor is the same.
-        Ok((Some(Arc::clone(self.fixed.get_or_init(|| body))), 1))
+        let bodies = std::iter::once(lower).chain(self.fixed.get().into_iter().flatten().cloned()).enumerate();
+        let boundary = &self.problem.boundary;
+        let with_rows = |(number, body): (usize, Arc<CompliantBody>)| {
+            let rows = BodyRows::new(number, &body.condensed, boundary, &configuration.rows);
+            ContactBody { body, rows }
+        };
+        let bodies: Vec<ContactBody> = bodies.map(with_rows).collect();
+        let load = configuration.load(contact_stiffness(boundary, &bodies));
+        let unit = if load > 0.0 { load } else { 1.0 };
+        let rows = Arc::clone(&configuration.rows);
+        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, rows, unit);
+        Ok((contact, configuration.positions, load, factorizations))
     }
 
     /// The state of a shape to a relative residual, from contact displacements of a similar shape or from nothing.
@@ -132,7 +120,7 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<ContactState<DirectState>, ContactError> {
-        let (mut contact, block, load, factorizations) = self.condense(configuration)?;
+        let (mut contact, positions, load, factorizations) = self.condense(configuration)?;
         Stage::Contact.enter()?;
         let (solution, work, programs) = if load > 0.0 {
             // Why there is no state is asked only where none was found.
@@ -146,11 +134,13 @@ impl DirectSolver {
             (contact.at_rest(), Work::default(), 0)
         };
         let displacements = contact.bodies.iter().map(|_| OnceLock::new()).collect();
-        let state = DirectState { block, contact, solution, load, displacements };
+        let rows = Arc::clone(&contact.rows);
+        let state = DirectState { positions, contact, solution, load, displacements };
         let forces = state.forces();
         forces.residuals.check(tolerance)?;
         Ok(ContactState {
             forces,
+            rows,
             load,
             solver: SolverKind::Direct,
             reason: (programs > 0).then(|| format!("{BY_NEWTON}, found no state; cone program {programs} led to it")),
@@ -169,7 +159,7 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(CondensedSolution, Work, usize), ContactError> {
-        let size: usize = contact.bodies.iter().map(|body| body.free.len()).sum();
+        let size: usize = contact.bodies.iter().map(|body| body.body.free.len()).sum();
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
@@ -207,7 +197,7 @@ impl ContactSolver for DirectSolver {
     }
 
     fn sizes(&self) -> [usize; 2] {
-        [3 * self.problem.grid.node_count() * self.held.len(), self.problem.boundary.row_count]
+        [self.problem.displacement_count(), self.problem.boundary.row_count]
     }
 
     fn left_out(&self) -> Option<&'static str> {
@@ -236,7 +226,7 @@ impl ContactSolver for DirectSolver {
         self.check(state)?;
         let (direction, displacements) = self.problem.parts_of(direction)?;
         if state.load == 0.0 {
-            return Ok(Sensitivities::at_rest(self.problem.grid.column_count()));
+            return Ok(Sensitivities::at_rest(self.problem.bodies[0].mesh.node_count()));
         }
         let clock = Instant::now();
         Stage::Adjoint.enter()?;
@@ -244,37 +234,31 @@ impl ContactSolver for DirectSolver {
         let loads = displacements.map_or_else(Vec::new, |displacements| self.condensed_loads(state, displacements));
         let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction, &loads);
         let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
-        let value_error = value_error.with_displacements(state.size_of(&loads));
+        let value_error = value_error.with_displacements(loads.iter().map(|load| load.size).sum());
         let u = state.displacement(0);
         let none = || vec![0.0; u.len()];
         let load = loads.into_iter().next().map_or_else(none, |load| load.full);
-        let p = state.extend_under(0, &adjoint.displacement, &adjoint.multipliers, &load);
+        let p = state.contact.bodies[0].extend_under(&adjoint.displacements[0], &adjoint.multipliers, &load);
         let adjoint_seconds = clock.elapsed().as_secs_f64();
         Stage::ShapeDerivative.enter()?;
-        let heights = self.height_sensitivities(state, u, &p, &adjoint.multipliers);
-        if heights.iter().any(|height| !height.is_finite()) {
+        let positions = self.shape_derivative(state, [u, &p], &adjoint);
+        if positions.as_flattened().iter().any(|value| !value.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
         }
         let shape_seconds = clock.elapsed().as_secs_f64() - adjoint_seconds;
-        Ok(Sensitivities { heights, applications: 0, adjoint_seconds, shape_seconds, value_error })
+        Ok(Sensitivities { positions, applications: 0, adjoint_seconds, shape_seconds, value_error })
     }
 
     fn tangents(&self, state: &DirectState, changes: &[Vec<f64>], _tolerance: f64) -> Result<Tangents, ContactError> {
         self.check(state)?;
         self.problem.check_changes(changes)?;
-        let rows = self.problem.boundary.row_count;
+        let velocities = self.problem.map.velocities(changes);
         if state.load == 0.0 {
-            return Ok(Tangents::at_rest(rows, changes));
+            return Ok(Tangents::at_rest(&self.problem, &state.contact.rows, &velocities));
         }
         Stage::Adjoint.enter()?;
-        let (solution, lower) = (&state.solution, &state.contact.bodies[0]);
-        let u = state.displacement(0);
-        let (grid, scene) = (&self.problem.grid, &self.problem.scene.lower);
-        let whole = Subdomain::whole(grid);
-        let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, u, changes);
-        let forces = Mat::from_fn(u.len(), changes.len(), |dof, column| forces[column][dof]);
-        let loads = lower.condensed.condense_loads(forces, &self.lower.held);
-        let tangents = state.contact.tangents(&solution.linearizations, &loads, changes);
+        let (loads, approaches) = self.shape_loads(state, &velocities);
+        let tangents = state.contact.tangents(&state.solution.linearizations, &loads, &approaches);
         let entries = tangents.forces.iter().chain(&tangents.openings).flatten();
         if entries.copied().any(|entry| !entry.is_finite()) {
             return Err(ContactError::NotFinite { what: "tangents of the condensed state" });
@@ -304,12 +288,8 @@ impl ContactSolver for DirectSolver {
             return Ok(0.0);
         }
         let (contact, solution) = (&state.contact, &state.solution);
-        let upper = self.problem.upper_block()?;
-        let blocks = std::iter::once(&state.block).chain(&upper);
-        let patterns = std::iter::once(&self.lower).chain(&self.upper);
-        let parts = contact.bodies.iter().zip(patterns).zip(self.problem.bodies().zip(blocks));
-        let delta =
-            parts.map(|((body, pattern), (scene, block))| body.refinement(pattern, scene, block, &solution.forces));
+        let parts = contact.bodies.iter().zip(self.problem.bodies.iter().zip(&state.positions));
+        let delta = parts.map(|(own, (body, positions))| own.refinement(body, positions, &solution.forces));
         Ok(contact.change_of_forces(&solution.linearizations, &delta.collect::<Vec<_>>()))
     }
 
@@ -324,9 +304,11 @@ impl DirectSolver {
     /// # Errors
     /// [`ContactError::ForeignState`].
     pub(super) fn check(&self, state: &DirectState) -> Result<(), ContactError> {
-        let (expected, found) =
-            (3 * self.problem.boundary.points.len() * self.held.len(), state.solution.displacement.len());
-        if expected != found || state.block.grid != self.problem.grid {
+        let expected = 3 * self.patterns.iter().map(|pattern| pattern.contact.len()).sum::<usize>();
+        let found = state.solution.displacement.len();
+        let nodes = self.problem.bodies.iter().zip(&state.positions);
+        let mut nodes = nodes.map(|(body, positions)| (body.mesh.node_count(), positions.len()));
+        if expected != found || nodes.any(|(own, other)| own != other) {
             return Err(ContactError::ForeignState { what: "contact dofs", expected, found });
         }
         Ok(())
@@ -334,24 +316,18 @@ impl DirectSolver {
 
     /// ∂J/∂u of all bodies as loads on them.
     fn condensed_loads(&self, state: &DirectState, displacements: &[f64]) -> Vec<CondensedLoad> {
-        let bodies = state.contact.bodies.iter().zip(std::iter::once(&self.lower).chain(&self.upper));
-        let loads = displacements.chunks_exact(3 * self.problem.grid.node_count());
-        bodies.zip(loads).map(|((body, pattern), load)| CondensedLoad::new(body, pattern, load)).collect()
-    }
-
-    /// Element sums over the lower body, per contact node: displacements u, their adjoint p, packed multipliers η.
-    fn height_sensitivities(&self, state: &DirectState, u: &[f64], p: &[f64], eta: &[f64]) -> Vec<f64> {
-        let (grid, lower) = (&self.problem.grid, &self.problem.scene.lower);
-        let whole = Subdomain::whole(grid);
-        let mut heights = vec![0.0; grid.column_count()];
-        for (column, value) in column_sensitivities(&state.block, &whole, &lower.material, &lower.loads, u, p) {
-            heights[column] += value;
-        }
-        // The gap F² − F_α falls as the surface rises.
-        for (height, point) in heights.iter_mut().zip(&self.problem.boundary.points) {
-            *height -= eta[point.start];
-        }
-        heights
+        let mut rest = displacements;
+        let load = |number: usize| {
+            let (body, piece) = (&self.problem.bodies[number], &self.patterns[number].piece);
+            let (own, others) = rest.split_at(3 * body.mesh.node_count());
+            rest = others;
+            let mut load = vec![0.0; piece.dof_count()];
+            for (node, force) in own.as_chunks::<3>().0.iter().enumerate() {
+                piece.add_force(body, node as u32, *force, &mut load);
+            }
+            CondensedLoad::new(&state.contact.bodies[number].body, load, state.displacement(number))
+        };
+        (0..self.patterns.len()).map(load).collect()
     }
 }
 
@@ -372,15 +348,6 @@ impl CompliantContact {
 }
 
 impl DirectState {
-    /// Σ|l_i u_i| of loads on all bodies.
-    fn size_of(&self, loads: &[CondensedLoad]) -> f64 {
-        let products = loads
-            .iter()
-            .enumerate()
-            .map(|(body, load)| load.full.iter().zip(self.displacement(body)).map(|(l, u)| (l * u).abs()).sum::<f64>());
-        products.sum()
-    }
-
     fn forces(&self) -> ContactForces {
         let (contact, solution) = (&self.contact, &self.solution);
         let boundary = &contact.problem.boundary;
@@ -398,10 +365,10 @@ impl DirectState {
         let mut forces = solution.forces.clone();
         for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
             if *linearization == Linearization::Open {
-                forces[point.start..point.start + point.row_count()].fill(0.0);
+                forces[point.rows()].fill(0.0);
             }
         }
-        ContactForces::unpack(boundary, &forces, &jumps, status, residuals, Kink::of(boundary, &arguments))
+        ContactForces::unpack(boundary, &contact.rows, &forces, &jumps, status, residuals, Kink::of(boundary, &arguments))
     }
 }
 
@@ -418,14 +385,20 @@ fn refusal(_contact: &CompliantContact) -> Option<ContactError> {
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.
-fn contact_stiffness(lower: &CompliantBody, upper: Option<&CompliantBody>) -> f64 {
-    let count = lower.condensed.schur.nrows() / 3;
-    let diagonal = |body: &CompliantBody, node: usize| body.condensed.schur[(3 * node + 2, 3 * node + 2)];
-    let sum: f64 = (0..count)
-        .map(|node| match upper {
-            Some(upper) => 1.0 / (1.0 / diagonal(lower, node) + 1.0 / diagonal(upper, node)),
-            None => diagonal(lower, node),
-        })
-        .sum();
-    sum / count as f64
+fn contact_stiffness(boundary: &ContactBoundary, bodies: &[ContactBody]) -> f64 {
+    let of_body = |body: &ContactBody, row: usize| {
+        let entries = body.rows.row(row);
+        let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
+        let schur = &body.body.condensed.schur;
+        let product = entries.iter().flat_map(|(i, a)| entries.iter().map(move |(j, b)| a * b * schur[(*i, *j)]));
+        (square > 0.0).then(|| product.sum::<f64>() / square)
+    };
+    let series = |point: &ContactPoint| {
+        let own: Vec<f64> = bodies.iter().filter_map(|body| of_body(body, point.start)).collect();
+        match own[..] {
+            [only] => only,
+            _ => 1.0 / own.iter().map(|stiffness| 1.0 / stiffness).sum::<f64>(),
+        }
+    };
+    boundary.points.iter().map(series).sum::<f64>() / boundary.points.len() as f64
 }

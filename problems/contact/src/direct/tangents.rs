@@ -1,41 +1,42 @@
 //! Forward derivative of the condensed problem: all columns on one factorisation; method.md (5.4).
 //!
 //! ```text
-//! r = −∂(K u − f),   r_c: what it puts on the contact dofs,   δd = B C r_c − ∂g,   δe = Nᵀ r_c
+//! r = −∂(K u + Bᵀλ − f),   r_c: what it puts on the contact dofs,   δd = B C r_c + ∂B u − ∂g,   δe = Nᵀ r_c
 //! M (δλ; δa) = (D δd; δe),   M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a),   δw = δd − C δλ + R δa
 //! ```
 //! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of the upper body are those of its reference
 //! shape, so that the change of the lower body's own motions is the only one; it is part of r.
 
+use crate::direct::compliant_body::ContactBody;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::newton::SPRINGS;
 use crate::equilibrium::Tangents;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::linear::dense::{DenseLu, multiply, multiply_columns};
 use crate::linear::vector::{dot, norm};
 use faer::Mat;
 use nalgebra::DVector;
 
 impl CompliantContact {
-    /// Tangents at given derivatives, for forces on the contact dofs of the lower body (N, one column per change) and
-    /// changes of the heights of the contact nodes, mm.
+    /// Tangents at given derivatives, for forces on the contact dofs of every body (N, one column per change) and
+    /// ∂B u − ∂g over the packed rows of every change, mm.
     pub(super) fn tangents(
         &self,
         linearizations: &[Linearization],
-        contact_loads: &Mat<f64>,
-        changes: &[Vec<f64>],
+        contact_loads: &[Mat<f64>],
+        approaches: &[Vec<f64>],
     ) -> Tangents {
         let boundary = &self.problem.boundary;
         let (count, motions) = (self.row_count(), self.resultant.len());
-        let active = self.active_system(linearizations, 0.0, boundary.friction);
+        let active = self.active_system(linearizations, 0.0, Friction::Coulomb);
         let size = active.rows.len();
         let mut sprung = active.matrix.clone();
         for motion in size..size + motions {
             sprung[(motion, motion)] = SPRINGS[0];
         }
-        let driven: Vec<(Vec<f64>, Vec<f64>)> =
-            changes.iter().enumerate().map(|(k, change)| self.driving(contact_loads.col_as_slice(k), change)).collect();
-        let mut right = Mat::<f64>::zeros(size + motions, changes.len());
+        let driving = |(column, approach): (usize, &Vec<f64>)| self.driving(contact_loads, column, approach);
+        let driven: Vec<(Vec<f64>, Vec<f64>)> = approaches.iter().enumerate().map(driving).collect();
+        let mut right = Mat::<f64>::zeros(size + motions, approaches.len());
         for (column, (constant, resultant)) in driven.iter().enumerate() {
             let right = right.col_as_slice_mut(column);
             let mut row = 0;
@@ -43,7 +44,7 @@ impl CompliantContact {
                 if *linearization == Linearization::Open {
                     continue;
                 }
-                let block = linearization.derivative(node.row_count(), boundary.friction);
+                let block = linearization.derivative(node.row_count(), node.friction);
                 for coefficients in block.iter().take(node.row_count()) {
                     right[row] = coefficients.iter().zip(&constant[node.rows()]).map(|(d, w)| d * w).sum();
                     row += 1;
@@ -68,21 +69,16 @@ impl CompliantContact {
         tangents
     }
 
-    /// δd and δe, dimensionless, of forces on the contact dofs of the lower body and a change of the heights.
-    fn driving(&self, forces: &[f64], change: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let (lower, boundary) = (&self.bodies[0], &self.problem.boundary);
-        let mut constant = vec![0.0; self.row_count()];
-        let free = multiply(&lower.compliance, forces);
-        for &(row, dof) in &lower.rows {
-            constant[row] += lower.sign * free[dof];
-        }
-        // The gap F² − F_α falls as the surface rises.
-        for (point, height) in boundary.points.iter().zip(change) {
-            constant[point.start] += height;
+    /// δd and δe, dimensionless, of a column of forces on the contact dofs and of ∂B u − ∂g.
+    fn driving(&self, contact_loads: &[Mat<f64>], column: usize, approach: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut constant = approach.to_vec();
+        let mut own = Vec::new();
+        for (ContactBody { body, rows }, loads) in self.bodies.iter().zip(contact_loads) {
+            let forces = loads.col_as_slice(column);
+            rows.add_jumps(&multiply(&body.compliance, forces), 1.0, &mut constant);
+            own.extend(body.motions.iter().map(|motion| dot(motion, forces) / self.load));
         }
         constant.iter_mut().for_each(|d| *d /= self.unit * self.load);
-        let mut own: Vec<f64> = lower.motions.iter().map(|motion| dot(motion, forces) / self.load).collect();
-        own.resize(self.bodies.iter().map(|body| body.motions.len()).sum(), 0.0);
         (constant, self.resultants_of(&DVector::from_vec(own)))
     }
 }

@@ -1,38 +1,49 @@
 //! The contact nodes and the layout of their multipliers.
 //!
 //! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without
-//! friction, and none for a tangential dof that supports hold on all bodies (method.md section 3).
+//! friction, and as many as there are free directions beside the normal (method.md section 3).
 
-use crate::body::mesh::Grid;
-use crate::equilibrium::ContactStatus;
-use crate::scene::Scene;
-use nonsmooth::Vector;
+use crate::body::{Body, beyond};
+use crate::body::mesh::CellFace;
+use crate::error::SceneError;
+use crate::names::nodes_of;
+use crate::scene::ContactScene;
+use std::collections::BTreeSet;
 
-/// A node of the contact surface with its area and its rows.
+/// A node of a body in the rows of a contact node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Side {
+    /// The body.
+    pub body: usize,
+    /// The node of its mesh.
+    pub node: u32,
+    /// Its weight in jumps: 1 for the contact node itself, −1 for its partner.
+    pub weight: f64,
+}
+
+/// A node of the contact surface with its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPoint {
-    /// Column of nodes (i, j) of the grid.
-    pub position: [usize; 2],
-    /// Tributary area A of the projected grid, mm².
-    pub area: f64,
+    /// The node of the lower body.
+    pub node: u32,
+    /// The nodes in its rows, its own first.
+    pub sides: Vec<Side>,
     /// Position of its normal row in a packed contact vector.
     pub start: usize,
-    /// Tangential directions (0 for x₁, 1 for x₂) that have a row, in order.
-    pub tangents: Vec<usize>,
-    /// Whether any tangential dof is free, with or without a row.
+    /// Number of its tangential rows.
+    pub tangents: usize,
+    /// Whether any tangential direction is free, with or without a row.
     pub can_slide: bool,
+    /// Friction coefficient 𝓕.
+    pub friction: f64,
+    /// Orthonormal directions in which one of its nodes is free.
+    pub free: Vec<[f64; 3]>,
 }
 
 impl ContactPoint {
     /// Number of rows of this node.
     pub fn row_count(&self) -> usize {
-        1 + self.tangents.len()
-    }
-
-    /// (packed row, contact dof) of the rows of this node, whose position among the nodes is `index`.
-    pub fn rows_of(&self, index: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let components = std::iter::once(2).chain(self.tangents.iter().copied());
-        components.enumerate().map(move |(offset, component)| (self.start + offset, 3 * index + component))
+        1 + self.tangents
     }
 
     /// Its rows in a packed contact vector.
@@ -44,92 +55,81 @@ impl ContactPoint {
 /// All contact nodes of a scene.
 #[derive(Debug, Clone)]
 pub struct ContactBoundary {
-    /// The nodes, in the order of the grid's columns.
+    /// The nodes, ascending.
     pub points: Vec<ContactPoint>,
     /// Length of a packed contact vector.
     pub row_count: usize,
-    /// Friction coefficient 𝓕 of all nodes.
-    pub friction: f64,
+    has_friction: bool,
 }
 
 impl ContactBoundary {
-    /// The contact boundary of a scene: the top of the lower body.
-    pub fn new(scene: &Scene, grid: &Grid) -> Self {
+    /// The corners of some faces of the lower body, each with its partner on the upper body where there is one.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for names of regions that the mesh does not have.
+    pub(crate) fn new(
+        scene: &ContactScene,
+        bodies: &[Body],
+        faces: &[CellFace],
+        partner: impl Fn(u32) -> Option<u32>,
+    ) -> Result<Self, SceneError> {
+        let lower = &bodies[0];
+        let mut friction_of: Vec<(BTreeSet<u32>, f64)> = Vec::new();
+        for (name, friction) in &scene.friction_by_region {
+            friction_of.push((nodes_of("contact.friction_by_region", name, &lower.mesh)?.into_iter().collect(), *friction));
+        }
+        let has_friction = scene.has_friction();
+        let nodes: BTreeSet<u32> = faces.iter().flat_map(|face| corners(lower, *face)).collect();
         let mut row_count = 0;
-        let points = grid
-            .columns()
-            .map(|(i, j)| {
-                let mut held = scene.lower.held(grid, [i, j, grid.cells[2]]);
-                if let Some(upper) = &scene.upper {
-                    let above = upper.body.held(grid, [i, j, 0]);
-                    held = std::array::from_fn(|axis| held[axis] && above[axis]);
-                }
-                let free: Vec<usize> = (0..2).filter(|&axis| !held[axis]).collect();
-                let can_slide = !free.is_empty();
-                let tangents = if scene.friction > 0.0 { free } else { Vec::new() };
-                let (position, area) = ([i, j], grid.tributary_area(i, j));
-                let point = ContactPoint { position, area, start: row_count, tangents, can_slide };
-                row_count += point.row_count();
-                point
-            })
-            .collect();
-        Self { points, row_count, friction: scene.friction }
+        let point = |node: u32| {
+            let sides = std::iter::once(Side { body: 0, node, weight: 1.0 });
+            let sides = sides.chain(partner(node).map(|node| Side { body: 1, node, weight: -1.0 }));
+            let sides: Vec<Side> = sides.collect();
+            let free = free_directions(bodies, &sides);
+            let across = free.len().checked_sub(1)?;
+            let named = friction_of.iter().rev().find(|(nodes, _)| nodes.contains(&node));
+            let friction = named.map_or(scene.friction, |(_, friction)| *friction);
+            let tangents = if has_friction { across } else { 0 };
+            let point = ContactPoint { node, sides, start: row_count, tangents, can_slide: across > 0, friction, free };
+            row_count += point.row_count();
+            Some(point)
+        };
+        // A node that supports hold altogether has no contact row.
+        let points: Vec<ContactPoint> = nodes.into_iter().filter_map(point).collect();
+        Ok(Self { points, row_count, has_friction })
+    }
+
+    /// Leaves out nodes whose normals supports hold.
+    pub(crate) fn retain(&mut self, keeps: impl Fn(usize) -> bool) {
+        let mut index = 0;
+        self.points.retain(|_| {
+            index += 1;
+            keeps(index - 1)
+        });
+        self.row_count = 0;
+        for point in &mut self.points {
+            point.start = self.row_count;
+            self.row_count += point.row_count();
+        }
     }
 
     /// Whether the scene has friction, and with it tangential multipliers.
     pub fn has_friction(&self) -> bool {
-        self.friction > 0.0
-    }
-
-    /// Area of the closed nodes, Σ A over the nodes that stick or slip, mm²; one status per node, in the order of
-    /// [`ContactBoundary::points`].
-    pub fn closed_area(&self, status: &[ContactStatus]) -> f64 {
-        let nodes = self.points.iter().zip(status).filter(|(_, status)| **status != ContactStatus::Open);
-        nodes.map(|(point, _)| point.area).fold(0.0, |sum, area| sum + area)
-    }
-
-    /// σ = λ_N/A per contact node, MPa, of normal forces in N.
-    pub fn pressures(&self, normal: &[f64]) -> Vector {
-        Vector::from_iterator(
-            self.points.len(),
-            normal.iter().zip(&self.points).map(|(force, point)| force / point.area),
-        )
-    }
-
-    /// Length of the dual of a contact state: normal forces, then (with friction) two tangential forces per node.
-    pub fn dual_dimension(&self) -> usize {
-        self.points.len() * if self.has_friction() { 3 } else { 1 }
-    }
-
-    /// From the dual layout [normal; tangential pairs] to a packed contact vector.
-    pub fn pack(&self, dual: &[f64]) -> Vec<f64> {
-        let mut packed = Vec::with_capacity(self.row_count);
-        for (index, point) in self.points.iter().enumerate() {
-            packed.push(dual[index]);
-            packed.extend(point.tangents.iter().map(|tangent| dual[self.points.len() + 2 * index + tangent]));
-        }
-        packed
+        self.has_friction
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use crate::body::mesh::Grid;
-    use crate::equilibrium::{ContactBoundary, ContactStatus};
-    use crate::scene::signorini;
+/// Corners of a face of a body.
+pub(crate) fn corners(body: &Body, face: CellFace) -> impl Iterator<Item = u32> + '_ {
+    let corners = body.mesh.cell(face.cell as usize).kind.corner_count();
+    body.mesh.face_nodes(face).take(corners)
+}
 
-    #[test]
-    fn open_nodes_have_no_closed_area() {
-        let scene = signorini().expect("the scene of the paper");
-        let boundary = ContactBoundary::new(&scene, &Grid { cells: [2, 1, 1], size: scene.size });
-        assert_eq!(boundary.points.len(), 6);
-        let [a, b] = scene.size;
-        let mut status = [ContactStatus::Stick; 6];
-        assert!((boundary.closed_area(&status) / (a * b) - 1.0).abs() < 1e-15);
-        // A corner has an eighth of the area; the nodes at x1 = a/2 have a half together.
-        status[0] = ContactStatus::Open;
-        status[3] = ContactStatus::Slip;
-        assert!((boundary.closed_area(&status) / (a * b) - 0.875).abs() < 1e-15);
-        assert_eq!(boundary.closed_area(&[ContactStatus::Open; 6]), 0.0);
+/// Orthonormal directions in which one of some nodes is free: those that not all of them are held in.
+fn free_directions(bodies: &[Body], sides: &[Side]) -> Vec<[f64; 3]> {
+    let mut free: Vec<[f64; 3]> = Vec::new();
+    for direction in sides.iter().flat_map(|side| bodies[side.body].free(side.node)) {
+        free.extend(beyond(&free, direction));
     }
+    free
 }

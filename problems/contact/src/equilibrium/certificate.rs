@@ -90,7 +90,7 @@ impl Kink {
             let x = &arguments[point.rows()];
             let mut margin = if largest > 0.0 { x[0].abs() / largest } else { 0.0 };
             if x[0] > 0.0 && x.len() > 1 {
-                let (radius, length) = (boundary.friction * x[0], tangential_norm(x));
+                let (radius, length) = (point.friction * x[0], tangential_norm(x));
                 margin = margin.min((length - radius).abs() / length.max(radius));
             }
             kink.smallest_margin = kink.smallest_margin.min(margin);
@@ -106,7 +106,7 @@ pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[
     for point in &boundary.points {
         let range = point.rows();
         let x: Vec<f64> = range.clone().map(|row| forces[row] + stiffness * jumps[row]).collect();
-        law::project(&x, boundary.friction, &mut residual[range.clone()]);
+        law::project(&x, point.friction, &mut residual[range.clone()]);
         for row in range {
             residual[row] = forces[row] - residual[row];
         }
@@ -118,8 +118,8 @@ pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[
 /// no node is closed. Any other equilibrium λ satisfies λᵀCλ ≤ Σ λ_N (𝓕|w_T| + w_N), method.md (4.12): only nodes where
 /// this is positive can wedge a body in.
 pub(crate) fn wedging(boundary: &ContactBoundary, jumps: &[f64]) -> Vec<f64> {
-    let of_node = |jump: &[f64]| boundary.friction * tangential_norm(jump) + jump[0];
-    boundary.points.iter().map(|point| of_node(&jumps[point.rows()])).collect()
+    let of_node = |friction: f64, jump: &[f64]| friction * tangential_norm(jump) + jump[0];
+    boundary.points.iter().map(|point| of_node(point.friction, &jumps[point.rows()])).collect()
 }
 
 /// Complementarity, cone and dissipation residuals of packed multipliers and jumps, relative to `load`.
@@ -138,7 +138,7 @@ pub fn law_residuals(
         residuals.complementarity = residuals.complementarity.max(force[0].min(opening).abs());
         if force.len() > 1 {
             let (traction, slip) = (tangential_norm(force), stiffness * tangential_norm(jump));
-            let bound = boundary.friction * force[0].max(0.0);
+            let bound = point.friction * force[0].max(0.0);
             residuals.friction_cone = residuals.friction_cone.max(traction - bound);
             if force[0] > 0.0 {
                 let power: f64 = force[1..].iter().zip(&jump[1..]).map(|(f, j)| f * j * stiffness).sum();

@@ -1,9 +1,10 @@
 //! What every contact solver offers: a state, its derivative, what is known about it.
 
 use crate::equilibrium::{
-    ContactProblem, ContactState, ContactWarmStart, Diagnosis, SolvedBody, SolverState, ValueError,
+    ContactProblem, ContactRows, ContactState, ContactWarmStart, Diagnosis, SolvedBody, SolverState, ValueError,
 };
 use crate::error::ContactError;
+use crate::shape::Velocities;
 use std::fmt;
 
 /// A solver of one contact problem.
@@ -35,9 +36,9 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<ContactState<Self::State>, ContactError>;
 
-    /// Sensitivities of the heights of the contact nodes for a dual: j = ∂J/∂λ in packed rows, then, where J depends on
-    /// the displacements, l = ∂J/∂u with three entries per node of every body, lower first. What J depends on the shape
-    /// itself is not part of them. `tolerance`: relative residual of the adjoint, for solvers that iterate.
+    /// Sensitivities of the positions of the nodes of the lower body for a dual: j = ∂J/∂λ in packed rows, then, where J
+    /// depends on the displacements, l = ∂J/∂u with three entries per node of every body, lower first. What J depends on
+    /// the shape itself is not part of them. `tolerance`: relative residual of the adjoint, for solvers that iterate.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the adjoint, [`ContactError::NotFinite`] when it is singular,
@@ -49,13 +50,13 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError>;
 
-    /// Forward derivative of the contact state for changes of the heights of the contact nodes, mm, one vector per
-    /// change: columns of the generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of.
-    /// `tolerance`: relative residual of the linearized contact problems, for solvers that iterate.
+    /// Forward derivative of the contact state for changes of the controls, one vector per change: columns of the
+    /// generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of. `tolerance`: relative residual of
+    /// the linearized contact problems, for solvers that iterate.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::NotFinite`] when they are singular,
-    /// [`ContactError::ForeignState`] for changes of another surface.
+    /// [`ContactError::ForeignState`] for changes of another number of controls.
     fn tangents(&self, state: &Self::State, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError>;
 
     /// Contraction and condition at a solved shape.
@@ -88,12 +89,12 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     fn bodies(&self, state: &Self::State) -> Result<Vec<SolvedBody>, ContactError>;
 }
 
-/// Directional derivatives of a contact state, one per change of the heights, and what they cost.
+/// Directional derivatives of a contact state, one per change of the controls, and what they cost.
 #[derive(Debug, Clone)]
 pub struct Tangents {
-    /// Changes of the multipliers per change of the heights, packed rows, N.
+    /// Changes of the multipliers per change of the controls, packed rows, N.
     pub forces: Vec<Vec<f64>>,
-    /// Changes of the openings (normal jump less gap) of the contact nodes per change of the heights, mm.
+    /// Changes of the openings (normal jump less gap) of the contact nodes per change of the controls, mm.
     pub openings: Vec<Vec<f64>>,
     /// Relative residual of the linearized contact problems.
     pub residual: f64,
@@ -102,18 +103,23 @@ pub struct Tangents {
 }
 
 impl Tangents {
-    /// The tangents of bodies at rest: no force depends on the shape, and gaps follow the surface.
-    pub(crate) fn at_rest(row_count: usize, changes: &[Vec<f64>]) -> Self {
-        let forces = vec![vec![0.0; row_count]; changes.len()];
-        Self { forces, openings: changes.to_vec(), residual: 0.0, applications: 0 }
+    /// The tangents of bodies at rest: no force depends on the shape, and openings follow the gaps.
+    pub(crate) fn at_rest(problem: &ContactProblem, rows: &ContactRows, velocities: &Velocities<'_>) -> Self {
+        let count = velocities.count();
+        let opening = |column| {
+            let changes = rows.changes(&problem.boundary, velocities, column);
+            changes.iter().map(|change| -change.gap).collect()
+        };
+        let forces = vec![vec![0.0; problem.boundary.row_count]; count];
+        Self { forces, openings: (0..count).map(opening).collect(), residual: 0.0, applications: 0 }
     }
 }
 
-/// Sensitivities of the heights of the contact nodes, and what they cost.
+/// Sensitivities of the positions of the nodes of the lower body, and what they cost.
 #[derive(Debug, Clone)]
 pub struct Sensitivities {
-    /// ∂J/∂F per contact node, mm⁻¹ times the unit of J.
-    pub heights: Vec<f64>,
+    /// ∂J/∂x per node and component, mm⁻¹ times the unit of J; 0 for nodes that do not move with the shape.
+    pub positions: Vec<[f64; 3]>,
     /// Products with the dual operator F; 0 for direct condensation.
     pub applications: usize,
     /// Seconds of the adjoint system.
@@ -126,9 +132,9 @@ pub struct Sensitivities {
 
 impl Sensitivities {
     /// Sensitivities of bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
-    pub(crate) fn at_rest(contact_nodes: usize) -> Self {
+    pub(crate) fn at_rest(nodes: usize) -> Self {
         Self {
-            heights: vec![0.0; contact_nodes],
+            positions: vec![[0.0; 3]; nodes],
             applications: 0,
             adjoint_seconds: 0.0,
             shape_seconds: 0.0,

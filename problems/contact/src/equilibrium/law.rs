@@ -26,6 +26,25 @@ pub enum Linearization {
     },
 }
 
+/// What bounds the traction of a slip node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Friction {
+    /// The normal force of the node times 𝓕.
+    Coulomb,
+    /// A given bound, which does not follow the normal force.
+    Tresca,
+}
+
+impl Friction {
+    /// By how much the bound of a node grows with its normal force.
+    pub(crate) fn of(self, point: &ContactPoint) -> f64 {
+        match self {
+            Self::Coulomb => point.friction,
+            Self::Tresca => 0.0,
+        }
+    }
+}
+
 impl Linearization {
     /// The derivative selected at `x`, the packed rows of one node.
     pub fn at(x: &[f64], friction: f64) -> Self {
@@ -67,7 +86,7 @@ impl Linearization {
         match self {
             Self::Open => ContactStatus::Open,
             Self::Slip { .. } => ContactStatus::Slip,
-            Self::Stick if point.tangents.is_empty() && point.can_slide => ContactStatus::Slip,
+            Self::Stick if point.tangents == 0 && point.can_slide => ContactStatus::Slip,
             Self::Stick => ContactStatus::Stick,
         }
     }

@@ -1,25 +1,31 @@
-//! Unilateral contact with Coulomb friction: boundary, law, rigid motions, certificates, problem and state.
+//! Unilateral contact with Coulomb friction: boundary, rows of a shape, law, rigid motions, certificates, problem and
+//! state.
 
 mod boundary;
+mod cell_shapes;
 pub(crate) mod certificate;
 mod configuration;
 mod contact_solver;
 pub(crate) mod diagnosis;
+mod facets;
 pub(crate) mod law;
 pub(crate) mod modes;
 mod problem;
+mod rows;
 mod solved_body;
 mod stage;
 mod state;
 mod status;
 mod value_error;
 
-pub use boundary::{ContactBoundary, ContactPoint};
+pub use boundary::{ContactBoundary, ContactPoint, Side};
 pub use certificate::{Kink, MAX_RESIDUAL, Residuals, WEAKLY_ACTIVE};
 pub use configuration::Configuration;
 pub use contact_solver::{ContactSolver, Sensitivities, Tangents};
 pub use diagnosis::Diagnosis;
-pub use problem::ContactProblem;
+pub use facets::ContactFacets;
+pub use problem::{ContactProblem, Positions};
+pub use rows::{ContactGeometry, ContactRows, NodeRows, RowChange, RowSensitivities};
 pub use solved_body::SolvedBody;
 pub use stage::{Stage, TARGET as STAGE_TARGET};
 pub(crate) use state::Failed;

@@ -60,17 +60,20 @@ impl Frame {
     }
 }
 
+/// A part of a contact row: body, point in mm, direction times weight.
+pub type RowPart = (usize, [f64; 3], [f64; 3]);
+
 /// What the analysis needs to know of a scene's geometry.
 #[derive(Debug, Clone)]
 pub struct RigidScene {
-    /// Number of bodies, 1 or 2.
-    pub bodies: usize,
-    /// Held dofs: (body, point in mm, component).
-    pub held: Vec<(usize, [f64; 3], usize)>,
+    /// Names of the bodies.
+    pub names: Vec<String>,
+    /// Held directions: (body, point in mm, direction).
+    pub held: Vec<(usize, [f64; 3], [f64; 3])>,
     /// Nodal loads: (body, point in mm, force in N).
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
-    /// Contact nodes: position on the lower and (if there is one) on the upper body.
-    pub contact: Vec<[[f64; 3]; 2]>,
+    /// The rows of every contact node: the normal one, then the tangential ones.
+    pub contact: Vec<Vec<Vec<RowPart>>>,
     /// What the rotations of each body refer to.
     pub frames: Vec<Frame>,
 }
@@ -78,8 +81,8 @@ pub struct RigidScene {
 /// A motion that the supports of one body leave free.
 #[derive(Debug, Clone)]
 pub struct OwnMotion {
-    /// Displacements of the contact nodes, three per node.
-    pub contact: Vec<f64>,
+    /// The six coefficients of the motion.
+    pub coefficients: [f64; MOTIONS],
     /// Resultant of the loads of the body along it, N.
     pub resultant: f64,
 }
@@ -93,40 +96,40 @@ impl RigidScene {
         self.loads.iter().map(|(_, _, force)| force.iter().map(|f| f.abs()).sum::<f64>()).sum()
     }
 
-    fn row(&self, body: usize, point: [f64; 3], component: usize, sign: f64) -> DVector<f64> {
-        let mut row = DVector::zeros(MOTIONS * self.bodies);
+    /// The work of a force on all motions.
+    fn row(&self, &(body, point, force): &RowPart) -> DVector<f64> {
+        let mut row = DVector::zeros(MOTIONS * self.frames.len());
         for (mode, motion) in self.frames[body].motions(point).iter().enumerate() {
-            row[MOTIONS * body + mode] = sign * motion[component];
+            row[MOTIONS * body + mode] = (0..3).map(|axis| motion[axis] * force[axis]).sum();
         }
         row
     }
 
-    /// The jump (lower minus upper) of a contact node along a component.
-    fn contact_row(&self, points: &[[f64; 3]; 2], component: usize) -> DVector<f64> {
-        let mut row = self.row(0, points[0], component, 1.0);
-        if self.bodies == 2 {
-            row += self.row(1, points[1], component, -1.0);
-        }
-        row
+    /// The jumps of a contact row in all motions.
+    fn contact_row(&self, parts: &[RowPart]) -> DVector<f64> {
+        parts.iter().map(|part| self.row(part)).fold(DVector::zeros(MOTIONS * self.frames.len()), |sum, row| sum + row)
     }
 
     /// The motions that the supports of one body leave free.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
-        let basis = |point| self.frames[body].motions(point);
+        let row = |point, force: [f64; 3]| {
+            let works = self.frames[body].motions(point).map(|m| (0..3).map(|axis| m[axis] * force[axis]).sum::<f64>());
+            DVector::from_row_slice(&works)
+        };
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
-        let row = |point, component: usize| DVector::from_iterator(MOTIONS, basis(point).iter().map(|m| m[component]));
-        let free = kernel(&held.map(|&(_, point, component)| row(point, component)).collect::<Vec<_>>(), MOTIONS);
-        let displacement = |motion: &DVector<f64>, point: [f64; 3], component: usize| row(point, component).dot(motion);
-        let along = |motion| {
-            let points = self.contact.iter().map(|points| points[body]);
-            let contact = points.flat_map(|point| (0..3).map(move |component| displacement(motion, point, component)));
+        let free = kernel(&held.map(|&(_, point, direction)| row(point, direction)).collect::<Vec<_>>(), MOTIONS);
+        let along = |motion: &DVector<f64>| {
             let loads = self.loads.iter().filter(|(loaded, ..)| *loaded == body);
-            let work = |&(_, point, force): &(usize, [f64; 3], [f64; 3])| -> f64 {
-                (0..3).map(|component| force[component] * displacement(motion, point, component)).sum()
-            };
-            OwnMotion { contact: contact.collect(), resultant: loads.map(work).sum() }
+            let resultant = loads.map(|&(_, point, force)| row(point, force).dot(motion)).sum();
+            OwnMotion { coefficients: std::array::from_fn(|mode| motion[mode]), resultant }
         };
         free.iter().map(along).collect()
+    }
+
+    /// Displacement of a point of a body in one of its motions.
+    pub(crate) fn displacement(&self, body: usize, motion: &[f64], point: [f64; 3]) -> [f64; 3] {
+        let basis = self.frames[body].motions(point);
+        std::array::from_fn(|axis| basis.iter().zip(motion).map(|(basis, share)| basis[axis] * share).sum())
     }
 
     /// Checks that contact within its friction cone can carry the load; returns the motions that nothing holds, which
@@ -135,26 +138,18 @@ impl RigidScene {
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
     pub(crate) fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
-        let held = self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0));
-        let free = kernel(&held.collect::<Vec<_>>(), MOTIONS * self.bodies);
+        let held = self.held.iter().map(|part| self.row(part));
+        let free = kernel(&held.collect::<Vec<_>>(), MOTIONS * self.frames.len());
         if free.is_empty() {
             return Ok(Vec::new());
         }
         let project = |row: &DVector<f64>| DVector::from_iterator(free.len(), free.iter().map(|mode| mode.dot(row)));
-        let mut load = DVector::zeros(MOTIONS * self.bodies);
-        for &(body, point, force) in &self.loads {
-            for (component, value) in force.into_iter().enumerate() {
-                load += self.row(body, point, component, value);
-            }
-        }
-        let nodes = self.contact.iter().zip(&boundary.points);
-        let contact = nodes.map(|(points, point)| -> Vec<DVector<f64>> {
-            let components = std::iter::once(2).chain(point.tangents.iter().copied());
-            components.map(|component| self.contact_row(points, component)).collect()
-        });
-        let rows: Vec<Vec<DVector<f64>>> = contact.map(|rows| rows.iter().map(project).collect()).collect();
+        let load = self.contact_row(&self.loads);
+        let contact = self.contact.iter().map(|rows| rows.iter().map(|row| project(&self.contact_row(row))).collect());
+        let rows: Vec<Vec<DVector<f64>>> = contact.collect();
+        let friction: Vec<f64> = boundary.points.iter().map(|point| point.friction).collect();
         let scale = self.total_load();
-        let (rest, doubt) = ConeProjection { rows: &rows, friction: boundary.friction }.residual(&project(&load));
+        let (rest, doubt) = ConeProjection { rows: &rows, friction: &friction }.residual(&project(&load));
         let allowed = doubt.max(UNLOADED * scale);
         let motion = |coefficients: &DVector<f64>| -> DVector<f64> {
             free.iter().zip(coefficients.iter()).map(|(mode, coefficient)| mode * *coefficient).sum()
@@ -178,10 +173,11 @@ impl RigidScene {
             .enumerate()
             .filter(|(_, value)| value.abs() > 0.3 * largest)
             .map(|(index, value)| {
-                let body = if index < MOTIONS { "lower" } else { "upper" };
+                let body = &self.names[index / MOTIONS];
+                let body = if body == "body" { "the body".to_owned() } else { format!("the {body} body") };
                 let sign = if *value < 0.0 { "negative " } else { "" };
                 let kind = if index % MOTIONS < 3 { "translation along" } else { "rotation about" };
-                format!("{sign}{kind} x{} of the {body} body", index % 3 + 1)
+                format!("{sign}{kind} x{} of {body}", index % 3 + 1)
             })
             .collect();
         parts.join(" with ")
@@ -228,7 +224,7 @@ fn kernel(rows: &[DVector<f64>], size: usize) -> Vec<DVector<f64>> {
 struct ConeProjection<'a> {
     /// Per node: the normal row and its tangential rows, in coordinates of the free motions.
     rows: &'a [Vec<DVector<f64>>],
-    friction: f64,
+    friction: &'a [f64],
 }
 
 impl ConeProjection<'_> {
@@ -265,13 +261,13 @@ impl ConeProjection<'_> {
     /// with that product.
     fn support(&self, direction: &DVector<f64>) -> Option<(f64, DVector<f64>)> {
         let mut best: Option<(f64, DVector<f64>)> = None;
-        for rows in self.rows {
+        for (rows, friction) in self.rows.iter().zip(self.friction) {
             let tangential: Vec<f64> = rows[1..].iter().map(|row| row.dot(direction)).collect();
             let length = tangential.iter().map(|t| t * t).sum::<f64>().sqrt();
             let mut column = rows[0].clone();
             if length > 0.0 {
                 for (row, entry) in rows[1..].iter().zip(&tangential) {
-                    column += row * (self.friction * entry / length);
+                    column += row * (friction * entry / length);
                 }
             }
             let norm = column.norm();

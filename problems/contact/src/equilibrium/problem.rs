@@ -1,37 +1,44 @@
-//! A scene made discrete: contact boundary, blocks of a shape, gaps, rigid motions. What both contact solvers share.
+//! A scene made discrete: bodies, contact boundary, the map from controls to node positions. What all solvers share.
 
-use crate::body::elasticity::Formulation;
-use crate::body::elasticity::traction::face_weights;
-use crate::body::mesh::{Block, Grid};
-use crate::body::shape_load::loaded_faces;
-use crate::equilibrium::ContactBoundary;
+use crate::body::elasticity::{Formulation, Material};
+use crate::body::loads::nodal_forces;
+use crate::body::mesh::{BlockFace, CellFace, Mesh, block};
+use crate::body::Body;
 use crate::equilibrium::modes::{Frame, RigidScene};
+use crate::equilibrium::cell_shapes::CellShapes;
+use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactRows};
 use crate::error::{ContactError, SceneError};
-use crate::lattice;
-use crate::scene::{BodyScene, Scene};
-use crate::shape::{AdmissibleSet, HeightMap};
+use crate::names::find_face;
+use crate::scene::{Blocks, Geometry, Scene, UpperBody};
+use crate::shape::{AdmissibleSet, HeightShape, ShapeMap, ShapeScene, Velocities, height_map};
+use std::sync::Arc;
 
-/// Ratio of the edges of a brick from which it is extreme: total FETI may take hundreds of products and more, above all
-/// for plates and for bricks that are long in the plan.
-const EXTREME_BRICK: f64 = 30.0;
-
-/// Poisson's ratio from which standard bricks are nearly incompressible: total FETI takes hundreds of products.
+/// Poisson's ratio from which standard cells are nearly incompressible: total FETI takes hundreds of products.
 const LOCKING: f64 = 0.499;
+
+/// Positions of the nodes of all bodies, lower first, mm.
+pub type Positions = Vec<Arc<Vec<[f64; 3]>>>;
 
 /// The discrete problem behind a scene.
 #[derive(Debug)]
 pub struct ContactProblem {
     /// The scene that was discretised.
     pub scene: Scene,
-    /// Grid of both bodies.
-    pub grid: Grid,
+    /// The bodies, lower first.
+    pub bodies: Arc<[Body]>,
     /// The nodes that can come into contact.
     pub boundary: ContactBoundary,
-    /// From controls to heights of the contact nodes.
-    pub height_map: HeightMap,
+    /// What the contact rows of a shape are computed from.
+    pub geometry: ContactGeometry,
+    /// From controls to positions of the nodes of the lower body.
+    pub map: Arc<ShapeMap>,
     /// The set of controls that the scene admits.
     pub admissible: AdmissibleSet,
-    counter_heights: Vec<f64>,
+    shapes: CellShapes,
+    /// The contact rows at the start.
+    start_rows: ContactRows,
+    /// Positions of the upper body, where there is one.
+    fixed: Option<Arc<Vec<[f64; 3]>>>,
 }
 
 impl ContactProblem {
@@ -41,25 +48,43 @@ impl ContactProblem {
     /// [`SceneError`] naming the field.
     pub fn new(scene: Scene) -> Result<Self, SceneError> {
         scene.validate()?;
-        let grid = scene.grid();
-        let surface = scene.spline_surface()?;
-        let boundary = ContactBoundary::new(&scene, &grid);
-        let counter = &scene.counter_surface;
-        let ceiling: Vec<f64> = surface.places(scene.size).map(|[x1, x2]| counter.height(x1, x2)).collect();
-        let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, ceiling)?;
-        let places = grid.columns().map(|(i, j)| grid.position(i, j));
-        let counter_heights: Vec<f64> = places.map(|[x1, x2]| counter.height(x1, x2)).collect();
-        Ok(Self { grid, boundary, height_map: surface.height_map(&grid), admissible, counter_heights, scene })
+        let (bodies, partners) = bodies(&scene)?;
+        let faces = find_face("contact.face", &scene.contact.face, &bodies[0].mesh)?.to_vec();
+        SceneError::require(!faces.is_empty(), "contact.face", &scene.contact.face, "a face with at least one facet")?;
+        let partner = |node: u32| partners.as_ref().map(|shift| node - shift);
+        let (map, admissible) = shape(&scene, &bodies[0])?;
+        let boundary = ContactBoundary::new(&scene.contact, &bodies, &faces, partner)?;
+        let start = map.positions(&scene.shape.start());
+        let shapes = CellShapes::new(&bodies[0].mesh, &start, &faces);
+        let geometry =
+            ContactGeometry::new(faces, scene.counter_surface.clone(), scene.contact.normal, scene.contact.area);
+        let fixed = bodies.get(1).map(|upper| Arc::new(upper.mesh.nodes().to_vec()));
+        let start_rows = ContactRows { nodes: Vec::new() };
+        let (bodies, map) = (Arc::from(bodies), Arc::new(map));
+        let mut problem = Self { scene, bodies, boundary, geometry, map, admissible, shapes, start_rows, fixed };
+        problem.leave_out_held_nodes()?;
+        Ok(problem)
     }
 
-    /// Scenes of the bodies, lower first.
-    pub fn bodies(&self) -> impl Iterator<Item = &BodyScene> {
-        std::iter::once(&self.scene.lower).chain(self.scene.upper.as_ref().map(|upper| &upper.body))
+    /// Leaves out contact nodes whose normals supports hold at the start.
+    fn leave_out_held_nodes(&mut self) -> Result<(), SceneError> {
+        let refused = |error: ContactError| {
+            SceneError::out_of_range("counter_surface", error, "a surface with a normal at every contact node")
+        };
+        let rows = self.rows(&self.start_positions()).map_err(refused)?;
+        self.boundary.retain(|index| !rows.nodes[index].is_held());
+        self.start_rows = ContactRows { nodes: rows.nodes.into_iter().filter(|node| !node.is_held()).collect() };
+        let allowed = "a face with nodes that supports do not hold along their normals";
+        SceneError::require(!self.boundary.points.is_empty(), "contact.face", &self.scene.contact.face, allowed)
+    }
+
+    fn all_positions(&self, lower: Vec<[f64; 3]>) -> Positions {
+        std::iter::once(Arc::new(lower)).chain(self.fixed.clone()).collect()
     }
 
     /// Number of entries of the displacements of all bodies: three per node, lower body first.
     pub fn displacement_count(&self) -> usize {
-        3 * self.grid.node_count() * self.bodies().count()
+        3 * self.bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>()
     }
 
     /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and, where J depends on it, ∂J/∂u over all bodies.
@@ -78,107 +103,205 @@ impl ContactProblem {
         }
     }
 
-    /// Checks that changes of the surface have one entry per contact node.
+    /// Checks that changes of the shape have one entry per control.
     ///
     /// # Errors
-    /// [`ContactError::ForeignState`] for changes of another surface.
+    /// [`ContactError::ForeignState`] for changes of another shape.
     pub(crate) fn check_changes(&self, changes: &[Vec<f64>]) -> Result<(), ContactError> {
-        let expected = self.grid.column_count();
+        let expected = self.map.control_count();
         match changes.iter().map(Vec::len).find(|found| *found != expected) {
-            Some(found) => Err(ContactError::ForeignState { what: "heights of contact nodes", expected, found }),
+            Some(found) => Err(ContactError::ForeignState { what: "controls", expected, found }),
             None => Ok(()),
         }
     }
 
-    /// Edges of the bricks of the lower body at the start, mm.
-    fn brick_edges(&self) -> [f64; 3] {
-        let lengths = [self.scene.size[0], self.scene.size[1], self.scene.start_height];
-        std::array::from_fn(|axis| lengths[axis] / self.scene.mesh[axis] as f64)
+    /// The materials of all bodies.
+    pub fn materials(&self) -> impl Iterator<Item = &Material> {
+        self.bodies.iter().flat_map(Body::materials)
     }
 
     /// Why linear systems of the problem are ill conditioned, by material or bricks: total FETI is slow then.
     pub(crate) fn ill_conditioned(&self) -> Option<String> {
-        let locking = self.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
-        let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
+        let locking = self.materials().filter(|material| material.formulation() == Formulation::Standard);
+        let ratio = locking.map(Material::poisson_ratio).fold(f64::NEG_INFINITY, f64::max);
         if ratio >= LOCKING {
             return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
         }
-        let [a, b, height] = self.brick_edges();
-        let aspect = a.max(b).max(height) / a.min(b).min(height);
-        (aspect >= EXTREME_BRICK).then(|| format!("bricks have edges 1 : {aspect:.0}"))
+        let aspect = self.shapes.extreme_aspect()?;
+        Some(format!("cells have edges 1 : {aspect:.0}"))
     }
 
-    /// The height of the bricks over both edges of their plan, or both edges over the height, where that is extreme:
-    /// bricks are plates or rods along x₃ then.
+    /// The proportions of cells that are plates on the contact face or rods across it, where they are extreme.
     pub(crate) fn flat_or_tall(&self) -> Option<f64> {
-        let [a, b, height] = self.brick_edges();
-        let ratio = (height / a.max(b)).max(a.min(b) / height);
-        (ratio >= EXTREME_BRICK).then_some(ratio)
+        self.shapes.flat_or_tall()
     }
 
-    /// The lower body of a shape.
+    /// Positions of all nodes of a shape.
     ///
     /// # Errors
     /// [`ContactError::InvertedElement`].
-    pub fn lower_block(&self, controls: &[f64]) -> Result<Block, ContactError> {
-        let (lower, upper) = (vec![0.0; self.grid.column_count()], self.height_map.heights(controls));
-        Block { grid: self.grid, lower, upper }.checked(1)
+    pub fn positions(&self, controls: &[f64]) -> Result<Positions, ContactError> {
+        let positions = self.all_positions(self.map.positions(controls));
+        check_cells(&self.bodies[0], &positions[0])?;
+        Ok(positions)
     }
 
-    /// The upper body, if there is one.
+    /// Positions of all nodes at the start of the scene.
+    pub fn start_positions(&self) -> Positions {
+        self.all_positions(self.map.positions(&self.scene.shape.start()))
+    }
+
+    /// The contact rows of a shape.
     ///
     /// # Errors
-    /// [`ContactError::InvertedElement`].
-    pub(crate) fn upper_block(&self) -> Result<Option<Block>, ContactError> {
-        let Some(upper) = &self.scene.upper else { return Ok(None) };
-        let (lower, upper) = (self.counter_heights.clone(), vec![upper.top; self.grid.column_count()]);
-        Block { grid: self.grid, lower, upper }.checked(2).map(Some)
+    /// [`ContactError::NoFoot`].
+    pub fn rows(&self, positions: &Positions) -> Result<ContactRows, ContactError> {
+        let positions: Vec<&[[f64; 3]]> = positions.iter().map(|positions| positions.as_slice()).collect();
+        self.geometry.rows(&self.boundary, &self.bodies, &positions)
     }
 
-    /// All blocks of a shape, lower first.
-    ///
-    /// # Errors
-    /// [`ContactError::InvertedElement`].
-    pub fn blocks(&self, controls: &[f64]) -> Result<Vec<Block>, ContactError> {
-        Ok(std::iter::once(self.lower_block(controls)?).chain(self.upper_block()?).collect())
+    /// The facets of the contact surface.
+    pub fn contact_facets(&self) -> ContactFacets {
+        ContactFacets::new(&self.bodies[0], &self.geometry.faces, &self.boundary)
     }
 
-    /// Initial gap c_N = F² − F_α per contact node, mm.
-    pub fn gaps(&self, lower: &Block) -> Vec<f64> {
-        self.counter_heights.iter().zip(&lower.upper).map(|(counter, height)| counter - height).collect()
+    /// The contact rows at the start of the scene.
+    pub fn start_rows(&self) -> &ContactRows {
+        &self.start_rows
     }
 
-    /// The scene as a rigid body analysis takes it.
-    pub fn rigid_scene(&self, blocks: &[Block]) -> RigidScene {
-        let (mut held, mut loads) = (Vec::new(), Vec::new());
-        for (body, (block, scene)) in blocks.iter().zip(self.bodies()).enumerate() {
-            for node in lattice::points([0; 3], self.grid.nodes()) {
-                for (component, fixed) in scene.held(&self.grid, node).into_iter().enumerate() {
-                    if fixed {
-                        held.push((body, block.coordinates(node), component));
-                    }
-                }
-            }
-            for load in &scene.loads {
-                for face in loaded_faces(&self.grid, load.face, None) {
-                    let nodes = face.map(|node| block.coordinates(node));
-                    for (point, weight) in nodes.into_iter().zip(face_weights(&nodes)) {
-                        loads.push((body, point, load.traction.map(|traction| weight * traction)));
-                    }
-                }
-            }
+    /// Area of the contact surface at the start, mm².
+    pub fn contact_area(&self) -> f64 {
+        self.start_rows.area()
+    }
+
+    /// Whether areas of contact nodes change with the shape.
+    pub fn areas_change(&self) -> bool {
+        !self.geometry.areas_are_projected() || self.map.moves_along(0) || self.map.moves_along(1)
+    }
+
+    /// The changes of the areas of all contact nodes along one field of velocities.
+    pub(crate) fn area_changes(&self, lower: &[[f64; 3]], velocities: &Velocities<'_>, column: usize) -> Vec<f64> {
+        self.geometry.area_changes(&self.boundary, &self.bodies[0], lower, velocities, column)
+    }
+
+    /// The sensitivities of the positions of the nodes of the lower body from those of the areas of all contact nodes.
+    pub(crate) fn pull_back_areas(&self, lower: &[[f64; 3]], areas: &[f64]) -> Vec<[f64; 3]> {
+        let mut positions = vec![[0.0; 3]; lower.len()];
+        if self.areas_change() {
+            let moves = |node| self.map.moves(node);
+            self.geometry.pull_back_areas(&self.boundary, &self.bodies[0], lower, areas, moves, &mut positions);
         }
-        let nodes = self.boundary.points.iter().map(|point| point.position);
-        let contact = nodes.map(|[i, j]| {
-            let lower = blocks[0].coordinates([i, j, self.grid.cells[2]]);
-            [lower, blocks.get(1).map_or(lower, |block| block.coordinates([i, j, 0]))]
-        });
-        let contact: Vec<[[f64; 3]; 2]> = contact.collect();
-        let frame = |(body, block): (usize, &Block)| {
-            let own = held.iter().filter(|(holder, ..)| *holder == body).map(|(_, point, _)| *point);
-            Frame::new(&own.collect::<Vec<_>>(), &block.points().collect::<Vec<_>>())
-        };
-        let frames = blocks.iter().enumerate().map(frame).collect();
-        RigidScene { bodies: blocks.len(), held, loads, contact, frames }
+        positions
     }
+
+    /// The bodies as a rigid body analysis takes them.
+    pub fn rigid_scene(&self, positions: &Positions, rows: &ContactRows) -> RigidScene {
+        let (mut held, mut loads) = (Vec::new(), Vec::new());
+        for (number, (body, positions)) in self.bodies.iter().zip(positions).enumerate() {
+            for node in body.held_nodes() {
+                let directions = body.held(node).iter();
+                held.extend(directions.map(|direction| (number, positions[node as usize], *direction)));
+            }
+            let forces = nodal_forces(body, positions).into_iter();
+            loads.extend(forces.map(|(node, force)| (number, positions[node as usize], force)));
+        }
+        let row = |point: &crate::equilibrium::ContactPoint, direction: &[f64; 3]| {
+            let side = |side: &crate::equilibrium::Side| {
+                (side.body, positions[side.body][side.node as usize], direction.map(|d| side.weight * d))
+            };
+            point.sides.iter().map(side).collect()
+        };
+        let contact = self.boundary.points.iter().zip(&rows.nodes);
+        let contact = contact.map(|(point, node)| node.directions.iter().map(|d| row(point, d)).collect());
+        let contact = contact.collect();
+        let frame = |(number, positions): (usize, &Arc<Vec<[f64; 3]>>)| {
+            let own = held.iter().filter(|(holder, ..)| *holder == number).map(|(_, point, _)| *point);
+            Frame::new(&own.collect::<Vec<_>>(), positions)
+        };
+        let frames = positions.iter().enumerate().map(frame).collect();
+        let names = self.bodies.iter().map(|body| body.name.clone()).collect();
+        RigidScene { names, held, loads, contact, frames }
+    }
+
+    /// Σ|f|, magnitudes of all nodal loads at the start, N.
+    pub fn load(&self) -> f64 {
+        let bodies = self.bodies.iter().zip(self.start_positions());
+        let forces = bodies.flat_map(|(body, positions)| nodal_forces(body, &positions));
+        forces.map(|(_, [x, y, z])| (x * x + y * y + z * z).sqrt()).sum()
+    }
+}
+
+/// Refuses a body with an inverted or flat cell.
+fn check_cells(body: &Body, positions: &[[f64; 3]]) -> Result<(), ContactError> {
+    for cell in 0..body.mesh.cell_count() {
+        let determinant = body.mesh.cell_nodes(cell, positions).smallest_determinant();
+        if !(determinant > 0.0 && determinant.is_finite()) {
+            return Err(ContactError::InvertedElement { body: body.name.clone(), cell, determinant });
+        }
+    }
+    Ok(())
+}
+
+/// The bodies of a scene, and by how much numbers of contact nodes of the lower body exceed those of their partners.
+fn bodies(scene: &Scene) -> Result<(Vec<Body>, Option<u32>), SceneError> {
+    match &scene.geometry {
+        Geometry::Blocks(blocks) => block_bodies(scene, blocks),
+        Geometry::Mesh(geometry) => {
+            let mesh = Arc::clone(&geometry.mesh);
+            let contact = find_face("contact.face", &scene.contact.face, &mesh)?.to_vec();
+            let body = Body::new("body", &scene.lower, mesh, &contact, geometry.piece_count())?;
+            let inverted = |error: ContactError| SceneError::out_of_range("body.mesh", error, "cells of positive volume");
+            check_cells(&body, body.mesh.nodes()).map_err(inverted)?;
+            Ok((vec![body], None))
+        }
+    }
+}
+
+fn block_bodies(scene: &Scene, blocks: &Blocks) -> Result<(Vec<Body>, Option<u32>), SceneError> {
+    let grid = blocks.grid();
+    let body = |name: &str, body, mesh: Mesh, contact: &str| {
+        let contact: Vec<CellFace> = mesh.faces()[contact].clone();
+        Body::new(name, body, Arc::new(mesh), &contact, 1)
+    };
+    let height = scene.heights().map_or(1.0, |heights| heights.start_height);
+    let (floor, top) = (vec![0.0; grid.column_count()], vec![height; grid.column_count()]);
+    let mesh = block(&grid, blocks.subdomains, &floor, &top)?;
+    let mut bodies = vec![body("lower", &scene.lower, mesh, &scene.contact.face)?];
+    let Some(UpperBody { body: upper, top }) = &scene.upper else { return Ok((bodies, None)) };
+    let counter: Vec<f64> = grid.places().map(|[x1, x2]| scene.counter_surface.height(x1, x2)).collect();
+    let mesh = block(&grid, blocks.subdomains, &counter, &vec![*top; grid.column_count()])?;
+    bodies.push(body("upper", upper, mesh, BlockFace::Bottom.name())?);
+    // Node (i, j, n₃) of the lower block meets node (i, j, 0) of the upper one.
+    Ok((bodies, Some(grid.cells[2] as u32)))
+}
+
+/// The map and the set of the controls.
+fn shape(scene: &Scene, lower: &Body) -> Result<(ShapeMap, AdmissibleSet), SceneError> {
+    match &scene.shape {
+        ShapeScene::Heights(heights) => {
+            let blocks = scene.blocks().ok_or_else(|| {
+                SceneError::out_of_range("surface", "a height surface of a mesh", "a lattice for meshes")
+            })?;
+            heights_of(scene, heights, blocks)
+        }
+        ShapeScene::Lattice(lattice) => {
+            let map = lattice.map(lower)?;
+            let admissible = AdmissibleSet::of_lattice(lattice, &map, &lower.mesh)?;
+            Ok((map, admissible))
+        }
+    }
+}
+
+fn heights_of(
+    scene: &Scene,
+    heights: &HeightShape,
+    blocks: &Blocks,
+) -> Result<(ShapeMap, AdmissibleSet), SceneError> {
+    let (grid, surface) = (blocks.grid(), heights.surface()?);
+    let counter = &scene.counter_surface;
+    let height = |[x1, x2]: [f64; 2]| if counter.has_heights() { counter.height(x1, x2) } else { f64::INFINITY };
+    let ceiling: Vec<f64> = surface.places(blocks.size).map(height).collect();
+    let admissible = AdmissibleSet::new(&surface, &grid, &heights.bounds, ceiling)?;
+    Ok((height_map(&surface, &grid), admissible))
 }

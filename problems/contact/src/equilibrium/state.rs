@@ -1,10 +1,13 @@
 //! A solved shape: contact forces, status, certificates, work.
 
-use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, SolvedBody, StatusCounts};
+use crate::equilibrium::{
+    ContactBoundary, ContactPoint, ContactRows, ContactStatus, Kink, NodeRows, Residuals, SolvedBody, StatusCounts,
+};
 use crate::error::ContactError;
 use crate::solvers::SolverKind;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Work spent on one state and its subgradient.
@@ -97,6 +100,8 @@ pub enum ContactWarmStart {
 pub struct ContactState<S> {
     /// Contact forces with status and certificates.
     pub forces: ContactForces,
+    /// The contact rows of the shape: normals, gaps, areas.
+    pub rows: Arc<ContactRows>,
     /// What derivative, diagnosis and displacements are computed from.
     pub solution: S,
     /// All bodies with their displacements, lower first, for a cost that depends on them; none otherwise
@@ -129,10 +134,10 @@ impl<S> ContactState<S> {
 
     /// Replaces the solver's own part of the solution and keeps all else.
     pub fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
-        let Self { forces, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications } =
+        let Self { forces, rows, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications } =
             self;
         let solution = change(solution);
-        ContactState { forces, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications }
+        ContactState { forces, rows, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications }
     }
 }
 
@@ -141,12 +146,12 @@ impl<S> ContactState<S> {
 pub struct ContactForces {
     /// λ_N per contact node, N; compression positive.
     pub normal: Vec<f64>,
-    /// λ_T per contact node along x₁, x₂, N; empty without friction.
-    pub tangential: Vec<[f64; 2]>,
+    /// λ_T per contact node along the axes, N; empty without friction.
+    pub tangential: Vec<[f64; 3]>,
     /// Normal jump minus gap per node, (N u − c_N), mm; ≤ 0.
     pub opening: Vec<f64>,
-    /// Tangential jump per node, mm; empty without friction.
-    pub slip: Vec<[f64; 2]>,
+    /// Tangential jump per node along the axes, mm; empty without friction.
+    pub slip: Vec<[f64; 3]>,
     /// Contact status per contact node.
     pub status: Vec<ContactStatus>,
     /// Residuals that certify the equilibrium.
@@ -159,6 +164,7 @@ impl ContactForces {
     /// From packed physical multipliers, jumps and statuses.
     pub fn unpack(
         boundary: &ContactBoundary,
+        rows: &ContactRows,
         forces: &[f64],
         jumps: &[f64],
         status: Vec<ContactStatus>,
@@ -167,17 +173,15 @@ impl ContactForces {
     ) -> Self {
         let normal = boundary.points.iter().map(|point| forces[point.start]).collect();
         let opening = boundary.points.iter().map(|point| jumps[point.start]).collect();
-        let pair = |values: &[f64]| -> Vec<[f64; 2]> {
+        let vectors = |values: &[f64]| -> Vec<[f64; 3]> {
             let points = if boundary.has_friction() { &boundary.points[..] } else { &[] };
-            let mut pairs = vec![[0.0; 2]; points.len()];
-            for (point, pair) in points.iter().zip(&mut pairs) {
-                for (&tangent, &value) in point.tangents.iter().zip(&values[point.start + 1..]) {
-                    pair[tangent] = value;
-                }
-            }
-            pairs
+            let vector = |(point, node): (&ContactPoint, &NodeRows)| {
+                let parts = || node.directions[1..].iter().zip(&values[point.start + 1..]);
+                std::array::from_fn(|axis| parts().map(|(tangent, value)| tangent[axis] * value).sum())
+            };
+            points.iter().zip(&rows.nodes).map(vector).collect()
         };
-        Self { normal, tangential: pair(forces), opening, slip: pair(jumps), status, residuals, kink }
+        Self { normal, tangential: vectors(forces), opening, slip: vectors(jumps), status, residuals, kink }
     }
 
     /// Total normal force Σλ_N, N.

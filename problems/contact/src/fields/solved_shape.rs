@@ -1,6 +1,6 @@
 //! All fields of a solved shape.
 
-use crate::equilibrium::{ContactForces, ContactProblem, SolvedBody};
+use crate::equilibrium::{ContactForces, ContactProblem, ContactRows, SolvedBody};
 use crate::fields::{BodyFields, ContactFields};
 
 /// All fields of a solved shape.
@@ -13,11 +13,16 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// From the bodies (lower first, as many as the scene has) and the contact forces of a solved shape.
-    pub(crate) fn new(problem: &ContactProblem, bodies: Vec<SolvedBody>, forces: &ContactForces) -> Self {
-        let contact = ContactFields::new(problem, &bodies[0], forces);
-        let bodies = bodies.into_iter().zip(problem.bodies());
-        Self { bodies: bodies.map(|(body, scene)| BodyFields::new(body, &scene.material)).collect(), contact }
+    /// From the bodies (lower first, as many as the scene has), the contact rows and the contact forces of a solved
+    /// shape.
+    pub(crate) fn new(
+        problem: &ContactProblem,
+        bodies: Vec<SolvedBody>,
+        contact: (&ContactRows, &ContactForces),
+    ) -> Self {
+        let contact = ContactFields::new(problem, &bodies[0], contact);
+        let bodies = bodies.into_iter().zip(&*problem.bodies);
+        Self { bodies: bodies.map(|(solved, body)| BodyFields::new(solved, body)).collect(), contact }
     }
 
     /// Largest gluing defect of the bodies, mm; see [`SolvedBody::gluing_defect`].

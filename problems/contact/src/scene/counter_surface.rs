@@ -1,5 +1,6 @@
-//! F²(x₁, x₂): the obstacle, or the lower surface of the upper body.
+//! The counter surface: a rigid obstacle, or F²(x₁, x₂), the lower surface of an upper body.
 
+use crate::error::SceneError;
 use crate::scene::HeightGrid;
 use crate::shape::Pieces;
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,45 @@ pub enum CounterSurface {
     },
     /// Heights on a grid over the base.
     Grid(HeightGrid),
+    /// A plane anywhere in space; an obstacle only.
+    TiltedPlane {
+        /// One of its points, mm.
+        point: [f64; 3],
+        /// Its normal from the body into the obstacle, of any length.
+        normal: [f64; 3],
+    },
+    /// A sphere anywhere in space; an obstacle only.
+    Ball {
+        /// Centre, mm.
+        centre: [f64; 3],
+        /// Radius, mm.
+        radius: f64,
+        /// Where the body is.
+        side: Side,
+    },
+    /// A circular cylinder anywhere in space, without ends; an obstacle only.
+    Cylinder {
+        /// A point of its axis, mm.
+        point: [f64; 3],
+        /// The direction of its axis, of any length.
+        axis: [f64; 3],
+        /// Radius, mm.
+        radius: f64,
+        /// Where the body is.
+        side: Side,
+    },
+}
+
+/// On which side of a closed surface the body is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SideName", transform = crate::schema::names_only))]
+pub enum Side {
+    /// Outside: the obstacle is convex.
+    #[default]
+    Outside,
+    /// Inside: the obstacle is a socket or a bore.
+    Inside,
 }
 
 /// R − √(R² − r²) of a sphere at the place r from its lowest point, without the cancellation for large R.
@@ -52,7 +92,41 @@ fn rise(radius: f64, place: [f64; 2]) -> f64 {
 }
 
 impl CounterSurface {
-    /// Height at (x₁, x₂), mm; NaN outside a sphere.
+    /// Refuses numbers that make no surface; `field` stands in messages.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for directions of no length, radii that are not positive, numbers that are not finite.
+    pub(crate) fn check(&self, field: &str) -> Result<(), SceneError> {
+        let direction = |name: &str, vector: &[f64; 3]| {
+            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let valid = length > 0.0 && length.is_finite();
+            SceneError::require(valid, format!("{field}.{name}"), format!("{vector:?}"), "a direction of some length")
+        };
+        let finite = |name: &str, vector: &[f64; 3]| {
+            let valid = vector.iter().all(|x| x.is_finite());
+            SceneError::require(valid, format!("{field}.{name}"), format!("{vector:?}"), "finite numbers (mm)")
+        };
+        let radius = |radius: f64| {
+            let valid = radius > 0.0 && radius.is_finite();
+            SceneError::require(valid, format!("{field}.radius"), radius, "a finite number > 0 (mm)")
+        };
+        match self {
+            Self::TiltedPlane { point, normal } => finite("point", point).and(direction("normal", normal)),
+            Self::Ball { centre, radius: r, .. } => finite("centre", centre).and(radius(*r)),
+            Self::Cylinder { point, axis, radius: r, .. } => {
+                finite("point", point).and(direction("axis", axis)).and(radius(*r))
+            }
+            Self::Sphere { radius: r, .. } => radius(*r),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether it is a height over (x₁, x₂).
+    pub fn has_heights(&self) -> bool {
+        !matches!(self, Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. })
+    }
+
+    /// Height at (x₁, x₂), mm; NaN outside a sphere, and where the surface is no height over (x₁, x₂).
     pub fn height(&self, x1: f64, x2: f64) -> f64 {
         match self {
             &Self::Waves { base, first, second, period } => {
@@ -66,10 +140,12 @@ impl CounterSurface {
             }
             &Self::Plane { height } => height,
             Self::Grid(grid) => grid.height(x1, x2),
+            Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. } => f64::NAN,
         }
     }
 
-    /// The smooth pieces of the surface over a base of `size` mm; none for a punch, which has a step.
+    /// The smooth pieces of the surface over a base of `size` mm; none for a punch, which has a step, and for surfaces
+    /// that are no heights.
     ///
     /// A sphere is most curved where it is farthest from its lowest point: |vᵀ∇²F v| ≤ |v|² R²/(R² − r²)^{3/2}.
     pub fn pieces(&self, size: [f64; 2]) -> Option<Pieces> {
@@ -86,7 +162,7 @@ impl CounterSurface {
                 (whole, [square * first.abs(), 0.0, square * second.abs()])
             }
             &Self::Sphere { radius, centre, .. } => (whole, sphere(radius, centre)),
-            Self::Punch { .. } => return None,
+            Self::Punch { .. } | Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. } => return None,
             Self::Plane { .. } => (whole, [0.0; 3]),
             Self::Grid(grid) => return Some(grid.pieces()),
         };

@@ -1,12 +1,15 @@
 //! A surface given by heights on a uniform grid, bilinear in between.
 
 use crate::error::SceneError;
+use crate::scene::foot::Jet;
 use crate::shape::Pieces;
 use serde::{Deserialize, Serialize};
 
 /// Heights on a uniform grid over a base, its edges included.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeightGrid {
+    /// (x₁, x₂) of the first place, mm.
+    origin: [f64; 2],
     size: [f64; 2],
     counts: [usize; 2],
     heights: Vec<f64>,
@@ -17,6 +20,7 @@ impl HeightGrid {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
+            origin: self.origin.map(|length| factor * length),
             size: self.size.map(|length| factor * length),
             counts: self.counts,
             heights: self.heights.iter().map(|height| factor * height).collect(),
@@ -40,8 +44,14 @@ impl HeightGrid {
                 let field = format!("height ({}, {}) of a grid", index / counts[1], index % counts[1]);
                 Err(SceneError::out_of_range(field, heights[index], "finite numbers (mm)"))
             }
-            None => Ok(Self { size, counts, heights }),
+            None => Ok(Self { origin: [0.0; 2], size, counts, heights }),
         }
+    }
+
+    /// The grid with its first place at (x₁, x₂).
+    #[must_use]
+    pub fn at(self, origin: [f64; 2]) -> Self {
+        Self { origin, ..self }
     }
 
     /// Height at (x₁, x₂), mm; beyond the base that of its edge.
@@ -51,11 +61,32 @@ impl HeightGrid {
         (1.0 - s) * ((1.0 - t) * at(i, j) + t * at(i, j + 1)) + s * ((1.0 - t) * at(i + 1, j) + t * at(i + 1, j + 1))
     }
 
+    /// Height with its slopes and second derivatives at (x₁, x₂), of the cell that the place lies in; flat across an
+    /// edge of the base beyond it.
+    pub(crate) fn jet(&self, x1: f64, x2: f64) -> Jet {
+        let [(i, s), (j, t)] = [self.place(0, x1), self.place(1, x2)];
+        let at = |i: usize, j: usize| self.heights[i * self.counts[1] + j];
+        let [h1, h2] = [0, 1].map(|axis: usize| self.size[axis] / (self.counts[axis] - 1) as f64);
+        let [in1, in2] = [(0, x1), (1, x2)].map(|(axis, x): (usize, f64)| {
+            let inside = (self.origin[axis]..=self.origin[axis] + self.size[axis]).contains(&x);
+            f64::from(u8::from(inside))
+        });
+        let along1 = (1.0 - t) * (at(i + 1, j) - at(i, j)) + t * (at(i + 1, j + 1) - at(i, j + 1));
+        let along2 = (1.0 - s) * (at(i, j + 1) - at(i, j)) + s * (at(i + 1, j + 1) - at(i + 1, j));
+        let twist = in1 * in2 * (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)) / (h1 * h2);
+        Jet {
+            height: self.height(x1, x2),
+            slopes: [in1 * along1 / h1, in2 * along2 / h2],
+            second: [[0.0, twist], [twist, 0.0]],
+        }
+    }
+
     /// The smooth pieces: the cells of the grid, on each of which the surface is bilinear.
     pub fn pieces(&self) -> Pieces {
         let cells = self.counts.map(|count| count - 1);
         let lines = std::array::from_fn(|axis: usize| {
-            (0..=cells[axis]).map(|index| self.size[axis] * index as f64 / cells[axis] as f64).collect()
+            let step = self.size[axis] / cells[axis] as f64;
+            (0..=cells[axis]).map(|index| self.origin[axis] + step * index as f64).collect()
         });
         let at = |i: usize, j: usize| self.heights[i * self.counts[1] + j];
         let twists = (0..cells[0]).flat_map(|i| {
@@ -68,7 +99,7 @@ impl HeightGrid {
     /// Cell along an axis and the position in it.
     fn place(&self, axis: usize, x: f64) -> (usize, f64) {
         let last = self.counts[axis] - 1;
-        let position = (x / self.size[axis]).clamp(0.0, 1.0) * last as f64;
+        let position = ((x - self.origin[axis]) / self.size[axis]).clamp(0.0, 1.0) * last as f64;
         let cell = (position as usize).min(last - 1);
         (cell, position - cell as f64)
     }

@@ -1,10 +1,12 @@
 //! The paper's examples; data and readings in method.md sections 7 and 8.
 
 use crate::body::elasticity::Material;
-use crate::body::mesh::Face;
+use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
-use crate::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody};
-use crate::shape::{ShapeBounds, SplineKind};
+use crate::scene::{
+    Blocks, BodyScene, ContactScene, CounterSurface, Geometry, Load, Scene, Support, UpperBody,
+};
+use crate::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 
 const ALONG_X1: [bool; 3] = [true, false, false];
 const ALONG_X2: [bool; 3] = [false, true, false];
@@ -17,21 +19,21 @@ const ALONG_X3: [bool; 3] = [false, false, true];
 pub fn signorini() -> Result<Scene, SceneError> {
     Ok(Scene {
         name: "signorini".into(),
-        size: [100.0, 100.0],
-        mesh: [12; 3],
-        subdomains: [2; 3],
-        lower: BodyScene {
-            material: Material::new(1.1e5, 0.33)?,
-            supports: vec![Support { face: Face::X1Min, components: [true, true, false] }],
-            loads: vec![Load { face: Face::Bottom, traction: [0.0, 0.0, 3000.0] }],
-        },
+        geometry: Geometry::Blocks(Blocks { size: [100.0, 100.0], bricks: [12; 3], subdomains: [2; 3] }),
+        lower: BodyScene::new(
+            Material::new(1.1e5, 0.33)?,
+            vec![Support::new(BlockFace::X1Min, [true, true, false])],
+            vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 3000.0])],
+        ),
         upper: None,
         counter_surface: CounterSurface::Waves { base: 103.0, first: 1.0, second: 2.0, period: 100.0 },
-        friction: 0.3,
-        surface: SplineKind::BSpline(3),
-        control_points: [6, 6],
-        bounds: ShapeBounds { minimum_height: 50.0, slope: 5.0, volume: [0.8e6, 1.2e6] },
-        start_height: 100.0,
+        contact: ContactScene::along_x3(BlockFace::Top, 0.3),
+        shape: ShapeScene::Heights(HeightShape {
+            spline: SplineKind::BSpline(3),
+            control_points: [6, 6],
+            bounds: ShapeBounds { minimum_height: 50.0, slope: 5.0, volume: [0.8e6, 1.2e6] },
+            start_height: 100.0,
+        }),
     })
 }
 
@@ -40,33 +42,25 @@ pub fn signorini() -> Result<Scene, SceneError> {
 /// # Errors
 /// Never for the constants used here; the material's check is passed on.
 pub fn hertz() -> Result<Scene, SceneError> {
-    let symmetry = || {
-        vec![Support { face: Face::X1Min, components: ALONG_X1 }, Support { face: Face::X2Min, components: ALONG_X2 }]
-    };
+    let symmetry = || vec![Support::new(BlockFace::X1Min, ALONG_X1), Support::new(BlockFace::X2Min, ALONG_X2)];
     let mut lower_supports = symmetry();
-    lower_supports.push(Support { face: Face::Bottom, components: ALONG_X3 });
+    lower_supports.push(Support::new(BlockFace::Bottom, ALONG_X3));
+    let loads = vec![
+        Load::traction(BlockFace::Top, [0.0, 0.0, -2000.0]),
+        Load::traction(BlockFace::X1Max, [500.0, 0.0, -2000.0]),
+    ];
     Ok(Scene {
         name: "hertz".into(),
-        size: [10.0, 10.0],
-        mesh: [12; 3],
-        subdomains: [2; 3],
-        lower: BodyScene { material: Material::new(7.0e4, 0.35)?, supports: lower_supports, loads: vec![] },
-        upper: Some(UpperBody {
-            body: BodyScene {
-                material: Material::new(2.1e5, 0.29)?,
-                supports: symmetry(),
-                loads: vec![
-                    Load { face: Face::Top, traction: [0.0, 0.0, -2000.0] },
-                    Load { face: Face::X1Max, traction: [500.0, 0.0, -2000.0] },
-                ],
-            },
-            top: 20.0,
-        }),
+        geometry: Geometry::Blocks(Blocks { size: [10.0, 10.0], bricks: [12; 3], subdomains: [2; 3] }),
+        lower: BodyScene::new(Material::new(7.0e4, 0.35)?, lower_supports, vec![]),
+        upper: Some(UpperBody { body: BodyScene::new(Material::new(2.1e5, 0.29)?, symmetry(), loads), top: 20.0 }),
         counter_surface: CounterSurface::Sphere { apex: 10.0, radius: 20.0, centre: [0.0; 2] },
-        friction: 0.3,
-        surface: SplineKind::BSpline(3),
-        control_points: [6, 6],
-        bounds: ShapeBounds { minimum_height: 5.0, slope: 5.0, volume: [800.0, 1200.0] },
-        start_height: 10.0,
+        contact: ContactScene::along_x3(BlockFace::Top, 0.3),
+        shape: ShapeScene::Heights(HeightShape {
+            spline: SplineKind::BSpline(3),
+            control_points: [6, 6],
+            bounds: ShapeBounds { minimum_height: 5.0, slope: 5.0, volume: [800.0, 1200.0] },
+            start_height: 10.0,
+        }),
     })
 }

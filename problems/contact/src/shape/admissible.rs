@@ -6,23 +6,32 @@
 //! method.md section 2. d₁, d₂ are numbers of intervals between controls. Both the measure of the domain under the
 //! spline and the volume of its bricks are kept within the bounds: they differ by the discretisation error.
 
-use crate::body::mesh::Grid;
+use crate::body::mesh::{Grid, Mesh};
 use crate::error::SceneError;
-use crate::shape::SplineSurface;
+use crate::names::nodes_of;
+use crate::shape::{LatticeShape, ShapeMap, SplineSurface};
 use nonsmooth::{Matrix, Polyhedron, Vector};
 
 /// Relative violation that still counts as admissible: rounding in user files and in the optimizer's steps.
 const ADMISSIBLE: f64 = 1e-9;
 
-/// The last rows are the volumes under the surface and of the bricks.
+/// The last rows of a height surface are the volumes under the surface and of the bricks.
 const VOLUME_ROWS: usize = 2;
+/// Most rows that bound displacements of nodes.
+const MOST_ROWS: usize = 2000;
 
 /// U as a polyhedron, with words for its rows.
 #[derive(Debug, Clone)]
 pub struct AdmissibleSet {
     polyhedron: Polyhedron,
+    control_names: Vec<String>,
     row_names: Vec<String>,
+    /// Number of rows that depend on the mesh, at the end.
+    volume_rows: usize,
 }
+
+/// A row with its name, entries and sides.
+type NamedRow = (String, Vec<(usize, f64)>, [f64; 2]);
 
 /// The constants of U.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -71,14 +80,56 @@ impl AdmissibleSet {
             measure.into_iter().enumerate().collect(),
             bounds.volume,
         ));
-        let areas: Vec<f64> = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
-        let bricks = surface.height_map(grid).pull_back(&areas);
+        let bricks = surface.height_map(grid).pull_back(&column_areas(grid));
         rows.push((
             "volume of the bricks (admissible.volume)".into(),
             bricks.into_iter().enumerate().collect(),
             bounds.volume,
         ));
-        let polyhedron = Polyhedron::boxed(Vector::from_element(dimension, bounds.minimum_height), upper)?;
+        let control_names = (0..dimension).map(|i| format!("height of control {i}, α[{i}]")).collect();
+        let lower = Vector::from_element(dimension, bounds.minimum_height);
+        Self::of_rows([lower, upper], control_names, rows, VOLUME_ROWS)
+    }
+
+    /// The box of a lattice with bounds of node displacements.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for names that the mesh does not have and for too many nodes; [`SceneError::Set`] when
+    /// bounds contradict each other.
+    pub(crate) fn of_lattice(lattice: &LatticeShape, map: &ShapeMap, mesh: &Mesh) -> Result<Self, SceneError> {
+        let mut rows: Vec<NamedRow> = Vec::new();
+        for (index, bound) in lattice.node_bounds.iter().enumerate() {
+            let field = format!("lattice.bounds[{index}]");
+            let axis = bound.component;
+            let mut nodes = nodes_of(&format!("{field}.place"), &bound.place, mesh)?;
+            nodes.sort_unstable();
+            nodes.dedup();
+            for node in nodes {
+                let row: Vec<(usize, f64)> = map.row(node, axis).collect();
+                if !row.is_empty() {
+                    let name = format!("displacement of node {node} along x{} ({field})", axis + 1);
+                    rows.push((name, row, bound.range));
+                }
+            }
+        }
+        let allowed = format!("at most {MOST_ROWS} nodes");
+        SceneError::require(rows.len() <= MOST_ROWS, "lattice.bounds", format!("{} nodes", rows.len()), allowed)?;
+        let [least, largest] = lattice.displacement.map(|value| Vector::from_element(map.control_count(), value));
+        Self::of_rows([least, largest], lattice.control_names(), rows, 0)
+    }
+
+    fn of_rows(
+        [lower, upper]: [Vector; 2],
+        control_names: Vec<String>,
+        rows: Vec<NamedRow>,
+        volume_rows: usize,
+    ) -> Result<Self, SceneError> {
+        let dimension = lower.len();
+        let polyhedron = Polyhedron::boxed(lower, upper)?;
+        let row_names = rows.iter().map(|(name, ..)| name.clone()).collect();
+        if rows.is_empty() {
+            return Ok(Self { polyhedron, control_names, row_names, volume_rows });
+        }
         let mut matrix = Matrix::zeros(rows.len(), dimension);
         for (row, (_, entries, _)) in rows.iter().enumerate() {
             for &(column, value) in entries {
@@ -87,7 +138,7 @@ impl AdmissibleSet {
         }
         let side = |which: usize| Vector::from_iterator(rows.len(), rows.iter().map(|(_, _, sides)| sides[which]));
         let polyhedron = polyhedron.with_rows(&matrix, &side(0), &side(1))?;
-        Ok(Self { polyhedron, row_names: rows.into_iter().map(|(name, ..)| name).collect() })
+        Ok(Self { polyhedron, control_names, row_names, volume_rows })
     }
 
     /// The set for the optimizer.
@@ -100,7 +151,7 @@ impl AdmissibleSet {
         let set = &self.polyhedron;
         let products = set.rows() * controls;
         let bounds = (0..controls.len())
-            .map(|i| (format!("height of control {i}, α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+            .map(|i| (self.control_names[i].clone(), controls[i], set.lower()[i], set.upper()[i]));
         let rows = (0..products.len())
             .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
         bounds.chain(rows).collect()
@@ -131,7 +182,7 @@ impl AdmissibleSet {
     /// # Errors
     /// As [`AdmissibleSet::check`].
     pub fn check_shape(&self, controls: &Vector) -> Result<(), SceneError> {
-        self.check_some(controls, self.row_names.len() - VOLUME_ROWS)
+        self.check_some(controls, self.row_names.len() - self.volume_rows)
     }
 
     /// Refuses controls outside the bounds and the first rows of U.
@@ -148,6 +199,14 @@ impl AdmissibleSet {
             None => Ok(()),
         }
     }
+}
+
+/// Areas of the columns of a grid: h₁h₂ inside, half on edges, quarter in corners; mm².
+fn column_areas(grid: &Grid) -> Vec<f64> {
+    let [n1, n2, _] = grid.cells;
+    let share = |index: usize, cells: usize| if index == 0 || index == cells { 0.5 } else { 1.0 };
+    let cell = grid.size[0] / n1 as f64 * grid.size[1] / n2 as f64;
+    grid.columns().map(|(i, j)| cell * share(i, n1) * share(j, n2)).collect()
 }
 
 /// A number with seven digits, as people read them.

@@ -24,6 +24,18 @@ impl Basis {
     pub fn clamped_uniform(degree: usize, count: usize) -> Result<Self, SceneError> {
         let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
         SceneError::require((1..count).contains(&degree), "surface.degree", degree, allowed)?;
+        Self::clamped(degree, count, "surface.degree")
+    }
+
+    /// The same, or the one constant function for one of degree 0; `field` stands in messages.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless degree < count.
+    pub fn clamped(degree: usize, count: usize, field: &str) -> Result<Self, SceneError> {
+        let allowed = format!("less than the {count} control points along the axis");
+        SceneError::require(degree < count, field, degree, allowed)?;
+        let valid = degree > 0 || count == 1;
+        SceneError::require(valid, field, degree, format!("at least 1 for {count} control points"))?;
         let spans = count - degree;
         let knots =
             (0..count + degree + 1).map(|index| (index.clamp(degree, count) - degree) as f64 / spans as f64).collect();

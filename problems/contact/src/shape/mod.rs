@@ -1,11 +1,20 @@
-//! The shape of the contact boundary: splines, control heights, admissible set.
-
-mod bspline;
+//! The controls of a shape: height surfaces of blocks and lattices in space as linear maps to node positions; the
+//! admissible set.
 
 mod admissible;
+mod bspline;
+mod heights;
+mod lattice;
+mod map;
 mod pieces;
+mod scene;
 mod surface;
 
 pub use admissible::{AdmissibleSet, ShapeBounds};
+pub use heights::HeightShape;
+pub(crate) use heights::height_map;
+pub use lattice::{Coordinates, Directions, LatticeShape, NodeBound};
+pub use map::{ShapeMap, Velocities};
 pub use pieces::Pieces;
+pub use scene::ShapeScene;
 pub use surface::{HeightMap, SplineKind, SplineSurface};

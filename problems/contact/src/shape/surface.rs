@@ -132,6 +132,13 @@ impl SplineSurface {
 }
 
 impl HeightMap {
+    /// The weights of the controls in the height of column (i, j), those that are not zero.
+    pub(crate) fn weights(&self, i: usize, j: usize) -> Vec<(usize, f64)> {
+        let (first, second) = (&self.along[0][i], &self.along[1][j]);
+        let all = first.iter().flat_map(|a| second.iter().map(move |b| a * b)).enumerate();
+        all.filter(|(_, weight)| *weight != 0.0).collect()
+    }
+
     /// Heights of all columns of the grid, mm.
     pub fn heights(&self, controls: &[f64]) -> Vec<f64> {
         let mut heights = Vec::with_capacity(self.along[0].len() * self.along[1].len());

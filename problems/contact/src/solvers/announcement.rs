@@ -19,7 +19,7 @@ pub enum Task {
     Solve(Id, Id, Box<Shape>),
     /// Sensitivities of a state for a dual, to a tolerance.
     Sensitivities(Id, Id, Vec<f64>, f64),
-    /// Tangents of a state for changes of the heights, to a tolerance.
+    /// Tangents of a state for changes of the controls, to a tolerance.
     Tangents(Id, Id, Vec<Vec<f64>>, f64),
     /// Contraction and condition at a state.
     Diagnose(Id, Id),
@@ -38,7 +38,7 @@ pub enum Task {
 /// A shape to be solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
-    /// The control heights, mm.
+    /// The controls.
     pub controls: Vec<f64>,
     /// What a similar shape has left.
     pub start: Option<ContactWarmStart>,

@@ -156,18 +156,17 @@ impl Leader {
 /// make, or a size whose symbolic analysis fails.
 pub fn prepared(plan: SolverPlan, communication: Arc<dyn Communication>) -> Result<OwnSolver, SceneError> {
     plan.scene.validate()?;
-    let clusters = plan.cluster_shape()?;
-    plan.check_processes(communication.size())?;
     memory::check(&plan, &*communication)?;
-    let SolverPlan { scene, kind, preconditioner, wanted, clusters: count } = plan;
-    let problem = Arc::new(ContactProblem::new(scene)?);
+    let problem = Arc::new(ContactProblem::new(plan.scene.clone())?);
+    plan.check(&problem, communication.size())?;
+    let SolverPlan { kind, preconditioner, wanted, clusters, .. } = plan;
     let options = TornOptions { preconditioner, clusters, communication };
     OwnSolver::new(problem, kind, options, wanted).map_err(|error| match error {
         ContactError::Clusters { reason, .. } => {
             let allowed = format!("clusters that are held together: {reason}");
-            SceneError::out_of_range("solver.clusters", count.unwrap_or_default(), allowed)
+            SceneError::out_of_range("solver.clusters", clusters.unwrap_or_default(), allowed)
         }
-        error => SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"),
+        error => SceneError::out_of_range("bodies", error, "a size that can be factored"),
     })
 }
 

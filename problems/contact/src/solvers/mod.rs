@@ -23,6 +23,6 @@ mod traffic;
 
 pub use any_solver::{AnySolver, AnyState};
 pub use kind::SolverKind;
-pub use plan::{SolverPlan, Wanted, cluster_shape};
+pub use plan::{SolverPlan, Wanted};
 pub use processes::{Processes, follow, lead};
 pub use traffic::Usage;

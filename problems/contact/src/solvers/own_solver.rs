@@ -193,7 +193,7 @@ impl OwnSolver {
 
     /// Solves the shape of a total FETI state by direct condensation, for derivatives that total FETI does not find.
     fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, DirectState), ContactError> {
-        let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
+        let configuration = Configuration::of(&self.problem, state.positions.clone())?;
         let direct = self.direct()?;
         Ok((direct, direct.solve_configuration(configuration, None, 0.0)?.solution))
     }

@@ -1,12 +1,13 @@
 //! Total FETI as a contact solver: states, their derivatives, what is known of them.
 
+use crate::body::mesh::smallest_extent;
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, Stage,
     Tangents,
 };
 use crate::error::ContactError;
 use crate::linear::vector::dot;
-use crate::tfeti::derivative::{DisplacementLoad, MovedSurface, height_sensitivities};
+use crate::tfeti::derivative::{DisplacementLoad, shape_derivative};
 use crate::tfeti::solver::{Clock, TotalFeti};
 use crate::tfeti::state::TornState;
 use crate::tfeti::torn::whole_bodies;
@@ -24,7 +25,7 @@ impl TotalFeti {
         let mut clock = Clock::start();
         let (direction, loads) = self.problem().parts_of(direction)?;
         let Some(contact) = self.contact_of(state)? else {
-            return Ok(Sensitivities::at_rest(self.problem().grid.column_count()));
+            return Ok(Sensitivities::at_rest(self.problem().bodies[0].mesh.node_count()));
         };
         Stage::Adjoint.enter()?;
         let constraints = &self.model.constraints;
@@ -34,22 +35,21 @@ impl TotalFeti {
             *scaled = physical / nu;
         }
         let iterate = &state.solution.iterate;
-        // A sensitivity of J over the height of the body, or over its displacement where that is larger; below the
-        // rounding of this scale, no residual means anything.
-        let heights = &state.blocks[0].upper;
-        let height = heights.iter().sum::<f64>() / heights.len() as f64;
+        // A sensitivity of J over the size of the body, or over its displacement where that is larger; below the rounding
+        // of this scale, no residual means anything.
+        let size_of_body = smallest_extent(&state.positions[0]);
         let load = loads.map(|loads| DisplacementLoad::new(&contact.operator, loads, &state.displacement));
         let [work, size] = load.as_ref().map_or([0.0; 2], |load| load.products);
         let natural = (dot(scaled.contact(), iterate.multipliers.contact()).abs() + work.abs())
-            / (contact.stiffness * height + contact.load);
+            / (contact.stiffness * size_of_body + contact.load);
         let linearizations = &state.solution.linearizations;
         let adjoint = contact.adjoint(linearizations, &scaled, load.as_ref(), tolerance, natural, max_products)?;
         let value_error = contact.value_error(iterate, &adjoint, &scaled).with_displacements(size);
         let adjoint_seconds = clock.lap();
         Stage::ShapeDerivative.enter()?;
-        let heights = height_sensitivities(&self.model, &state.blocks[0], &state.displacement, &adjoint);
+        let positions = shape_derivative(&self.model, state.shape(), &adjoint);
         let (applications, shape_seconds) = (contact.operator.applications(), clock.lap());
-        Ok(Sensitivities { heights, applications, adjoint_seconds, shape_seconds, value_error })
+        Ok(Sensitivities { positions, applications, adjoint_seconds, shape_seconds, value_error })
     }
 }
 
@@ -63,7 +63,7 @@ impl ContactSolver for TotalFeti {
 
     fn sizes(&self) -> [usize; 2] {
         let model = &self.model;
-        [model.total_dofs, model.constraints.total_equality_count + model.problem.boundary.row_count]
+        [model.total_dofs(), model.constraints.total_equality_count + model.problem.boundary.row_count]
     }
 
     fn left_out(&self) -> Option<&'static str> {
@@ -91,15 +91,10 @@ impl ContactSolver for TotalFeti {
     fn tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
         self.problem().check_changes(changes)?;
         let Some(contact) = self.contact_of(state)? else {
-            return Ok(Tangents::at_rest(self.problem().boundary.row_count, changes));
+            return Ok(Tangents::at_rest(self.problem(), &state.rows, &self.problem().map.velocities(changes)));
         };
         Stage::Adjoint.enter()?;
-        let surface = MovedSurface {
-            lower: &state.blocks[0],
-            displacement: &state.displacement,
-            linearizations: &state.solution.linearizations,
-        };
-        contact.tangents(surface, changes, tolerance)
+        contact.tangents(state.shape(), &state.solution.linearizations, changes, tolerance)
     }
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
@@ -117,6 +112,6 @@ impl ContactSolver for TotalFeti {
     /// Torn copies of a node are averaged. Of several processes, the first one alone gets the bodies, the others none.
     fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
         self.check(state)?;
-        Ok(whole_bodies(&self.model, &state.blocks, &state.displacement))
+        Ok(whole_bodies(&self.model, &state.positions, &state.displacement))
     }
 }

@@ -7,8 +7,8 @@
 //!             w_E = 0 on the rows that glue and support,    λ = Π(λ + c w) on the contact rows
 //! newton      solve that nonsmooth equation for (λ, a): linearise Π at an iterate, solve for the active set, project by P
 //! paper       or: bound |λ_T| by Ψ, minimise over λ (a QP), Ψ ← 𝓕 λ_N
-//! derivative  transpose the linearised equation for j = ∂J/∂λ: adjoint q, p; element sums give ∂J/∂(heights)
-//!             or solve it for changes of the heights: tangents ∂λ, ∂w, all columns in lockstep
+//! derivative  transpose the linearised equation for j = ∂J/∂λ: adjoint q, p; element sums give ∂J/∂(positions of the nodes)
+//!             or solve it for changes of the shape: tangents ∂λ, ∂w, all columns in lockstep
 //! solver      controls ─ factors ─ (d, F, G, e) ─ method ─▶ (λ, a) ─ forces, certificates, TornState ─ derivative
 //! ```
 //! method.md (4.1), (4.2). Each folder uses only those above it.

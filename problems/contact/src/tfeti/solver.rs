@@ -3,7 +3,7 @@
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
-    Configuration, ContactForces, ContactProblem, ContactState, ContactWarmStart, Failed, Kink, Residuals, Stage,
+    Configuration, ContactForces, ContactProblem, ContactRows, ContactState, ContactWarmStart, Failed, Kink, Residuals, Stage,
     StageSeconds, Work,
 };
 use crate::error::ContactError;
@@ -154,7 +154,7 @@ impl TotalFeti {
         let configuration = Configuration::new(&self.model.problem, controls)?;
         seconds.equilibrium = clock.lap();
         Stage::Factorization.enter()?;
-        let system = self.model.factorize(&configuration.blocks)?;
+        let system = self.model.factorize(&configuration)?;
         seconds.factorization = clock.lap();
         Stage::CoarseSpace.enter()?;
         let grounded = self.model.grounded_amplitudes(&system, &configuration);
@@ -164,7 +164,7 @@ impl TotalFeti {
         seconds.coarse_space = clock.lap();
         Stage::Contact.enter()?;
         let scales = [stiffness, if load > 0.0 { load } else { 1.0 }];
-        let contact = self.contact(&system, &space, &configuration.gaps, scales);
+        let contact = self.contact(&system, &space, &configuration.rows, scales);
         let work = |newton_steps| Work {
             newton_steps,
             dual_operator_applications: contact.operator.applications(),
@@ -183,11 +183,22 @@ impl TotalFeti {
         let work = work(solution.steps);
         forces.residuals.check(allowed).map_err(|error| Failed { error: Box::new(error), work })?;
         seconds.recovery = clock.lap();
-        let Configuration { blocks, gaps, .. } = configuration;
+        let Configuration { positions, rows, .. } = configuration;
         let constraints = Arc::clone(&self.model.constraints);
-        let state = TornState { blocks, space, constraints, solution, displacement, gaps, stiffness, load, system };
+        let state = TornState {
+            positions,
+            rows: Arc::clone(&rows),
+            space,
+            constraints,
+            solution,
+            displacement,
+            stiffness,
+            load,
+            system,
+        };
         let state = ContactState {
             forces,
+            rows,
             load,
             solver,
             reason: None,
@@ -212,12 +223,12 @@ impl TotalFeti {
         &'a self,
         system: &'a TornSystem,
         space: &'a CoarseSpace,
-        gaps: &'a [f64],
+        rows: &'a ContactRows,
         scales: [f64; 2],
     ) -> TornContact<'a> {
         let operator = DualOperator::new(&self.model, system);
         let preconditioner = Preconditioner::new(&self.model, system, self.preconditioner, scales[0]);
-        TornContact::new(operator, space, preconditioner, gaps, scales, self.precision)
+        TornContact::new(operator, space, preconditioner, rows, scales, self.precision)
     }
 
     /// The contact problem of a state; none for bodies at rest.
@@ -226,13 +237,13 @@ impl TotalFeti {
     /// [`ContactError::ForeignState`] for a state of another mesh.
     pub(super) fn contact_of<'a>(&'a self, state: &'a TornState) -> Result<Option<TornContact<'a>>, ContactError> {
         self.check(state)?;
-        let contact = || self.contact(&state.system, &state.space, &state.gaps, [state.stiffness, state.load]);
+        let contact = || self.contact(&state.system, &state.space, &state.rows, [state.stiffness, state.load]);
         Ok((state.load > 0.0).then(contact))
     }
 
     pub(super) fn check(&self, state: &TornState) -> Result<(), ContactError> {
         let (expected, found) = (self.model.interface.torn_count(), state.displacement.0.len());
-        if expected != found || state.blocks.iter().any(|block| block.grid != self.model.problem.grid) {
+        if expected != found {
             return Err(ContactError::ForeignState { what: "torn dofs", expected, found });
         }
         Ok(())
@@ -257,7 +268,7 @@ fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
     let status = status.map(|(point, linearization)| linearization.status(point)).collect();
     let kink = Kink::of(boundary, &contact.arguments(iterate));
     let forces = admissible_forces(contact, &forces, &solution.linearizations);
-    ContactForces::unpack(boundary, &forces, &jumps, status, residuals, kink)
+    ContactForces::unpack(boundary, contact.rows, &forces, &jumps, status, residuals, kink)
 }
 
 /// Forces brought into the friction cone, and to zero at open nodes: as much lies outside as the residual.
@@ -265,8 +276,8 @@ fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: 
     let mut admissible = vec![0.0; forces.len()];
     for (point, linearization) in contact.boundary.points.iter().zip(linearizations) {
         if *linearization != Linearization::Open {
-            let rows = point.start..point.start + point.row_count();
-            law::project(&forces[rows.clone()], contact.boundary.friction, &mut admissible[rows]);
+            let rows = point.rows();
+            law::project(&forces[rows.clone()], point.friction, &mut admissible[rows]);
         }
     }
     admissible

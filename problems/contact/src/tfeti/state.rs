@@ -1,7 +1,7 @@
 //! A shape solved by total FETI, with all that its derivative needs.
 
-use crate::body::mesh::Block;
-use crate::equilibrium::{ContactWarmStart, SolverState};
+use crate::equilibrium::{ContactRows, ContactWarmStart, Positions, SolverState};
+use crate::tfeti::derivative::SolvedShape;
 use crate::tfeti::dual::{CoarseSpace, TornSolution};
 use crate::tfeti::torn::{Constraints, TornSystem, TornVector};
 use std::sync::Arc;
@@ -9,20 +9,29 @@ use std::sync::Arc;
 /// A solved shape with all that its derivative needs.
 #[derive(Debug)]
 pub struct TornState {
-    /// The bodies, lower first.
-    pub(crate) blocks: Vec<Block>,
+    /// Positions of the nodes of all bodies, lower first.
+    pub(crate) positions: Positions,
+    pub(super) rows: Arc<ContactRows>,
     pub(super) system: TornSystem,
     pub(super) space: CoarseSpace,
     pub(super) constraints: Arc<Constraints>,
     pub(super) solution: TornSolution,
     pub(super) displacement: TornVector,
-    pub(super) gaps: Vec<f64>,
     pub(super) stiffness: f64,
     /// Force that residuals are relative to, N; zero for bodies at rest.
     pub(super) load: f64,
 }
 
 impl TornState {
+    pub(super) fn shape(&self) -> SolvedShape<'_> {
+        SolvedShape {
+            lower: &self.positions[0],
+            rows: &self.rows,
+            displacement: &self.displacement,
+            multipliers: &self.solution.iterate.multipliers,
+        }
+    }
+
     /// Displacements over the torn dofs of this process, then its ghosts, mm.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement.0

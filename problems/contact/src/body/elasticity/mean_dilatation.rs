@@ -1,70 +1,118 @@
-//! The volumetric part of a brick by its mean dilatation (B-bar; \[NagtegaalParksRice1974\], \[Hughes1980\]).
+//! The volumetric part of a cell by its mean dilatation (B-bar; \[NagtegaalParksRice1974\], \[Hughes1980\]). On
+//! tetrahedra of second order, it is the element P2 with a constant pressure.
 //!
 //! ```text
 //! K = K_deviatoric + (κ/V) D Dᵀ,   D_a = ∫ ∇N_a dV,   V = ∫ dV,    so that ∫ κ θ̄(u) θ̄(q) dV = κ D(u) D(q)/V
-//! ∂/∂x₃ᵛ:  κ (D′(u) D(q) + D(u) D′(q) − D(u) D(q) V′/V)/V,   D′(u) = Σ det [ ∇·u G₃ᵥ − Σ ∂₃u_i G_iᵥ ],   V′ = Σ det G₃ᵥ
+//! ∂/∂x_aᵛ:  κ (D′(u) D(q) + D(u) D′(q) − D(u) D(q) V′/V)/V,   D′(u) = Σ det [ ∇·u G_aᵥ − Σ ∂_a u_i G_iᵥ ],   V′ = Σ det G_aᵥ
 //! ```
-//! One constraint per brick instead of eight: near-incompressible bricks keep their bending modes. The deviatoric part
-//! is integrated fully, so no spurious mode appears.
+//! One constraint per cell instead of one per integration point: nearly incompressible cells keep their bending modes.
+//! The deviatoric part is integrated fully, so no spurious mode appears.
 
-use crate::body::elasticity::brick::{DOFS, GaussPoint, displacement_gradient};
+use crate::body::elasticity::gauss::GaussPoint;
+use crate::body::elasticity::stiffness::lower_start;
 use crate::scalar::Scalar;
 
-/// D(u)/V: the mean over the brick of its relative change of volume.
-pub fn mean(points: &[GaussPoint<f64>; 8], u: &[f64; DOFS]) -> f64 {
+/// D(u)/V: the mean over the cell of its relative change of volume.
+pub fn mean<const N: usize>(points: &[GaussPoint<f64, N>], u: &[f64]) -> f64 {
     let (mut dilatation, mut volume) = (0.0, 0.0);
     for point in points {
-        let gradient = displacement_gradient(point, u);
+        let gradient = point.gradient(u);
         dilatation += point.volume * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
         volume += point.volume;
     }
     dilatation / volume
 }
 
-/// Adds κ D Dᵀ/V to the lower triangle of a stiffness matrix.
-pub fn add_stiffness<T: Scalar>(points: &[GaussPoint<T>; 8], bulk_modulus: f64, matrix: &mut [[T; DOFS]; DOFS]) {
-    let (mut divergence, mut volume) = ([T::constant(0.0); DOFS], T::constant(0.0));
+/// D and V of a cell.
+fn divergence<T: Scalar, const N: usize>(points: &[GaussPoint<T, N>]) -> ([[T; 3]; N], T) {
+    let (mut divergence, mut volume) = ([[T::constant(0.0); 3]; N], T::constant(0.0));
     for point in points {
         volume += point.volume;
-        for (dof, entry) in divergence.iter_mut().enumerate() {
-            *entry += point.gradients[dof / 3][dof % 3] * point.volume;
+        for (sum, gradient) in divergence.iter_mut().zip(&point.gradients) {
+            for (sum, &gradient) in sum.iter_mut().zip(gradient) {
+                *sum += gradient * point.volume;
+            }
         }
     }
+    (divergence, volume)
+}
+
+/// Adds κ D Dᵀ/V to the lower triangle of a stiffness matrix.
+pub fn add_stiffness<T: Scalar, const N: usize>(points: &[GaussPoint<T, N>], bulk_modulus: f64, matrix: &mut [T]) {
+    let (divergence, volume) = divergence(points);
     let factor = T::constant(bulk_modulus) / volume;
-    for row in 0..DOFS {
-        for column in 0..=row {
-            matrix[row][column] += factor * divergence[row] * divergence[column];
+    let divergence = divergence.as_flattened();
+    for row in 0..3 * N {
+        for (entry, &column) in matrix[lower_start(row)..].iter_mut().zip(&divergence[..=row]) {
+            *entry += factor * divergence[row] * column;
         }
     }
 }
 
-/// Adds the derivative of κ D(u) D(q)/V with respect to the heights of the nodes.
-pub fn add_height_derivative(
-    points: &[GaussPoint<f64>; 8],
+/// Adds the derivative of κ D(u) D(q)/V with respect to the positions of the nodes.
+pub fn add_position_derivative<const N: usize>(
+    points: &[GaussPoint<f64, N>],
     bulk_modulus: f64,
-    u: &[f64; DOFS],
-    q: &[f64; DOFS],
-    result: &mut [f64; 8],
+    u: &[f64],
+    q: &[f64],
+    result: &mut [[f64; 3]; N],
 ) {
-    let (mut moved_u, mut moved_q, mut moved_volume) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+    let (mut moved_u, mut moved_q, mut moved_volume) = ([[0.0; 3]; N], [[0.0; 3]; N], [[0.0; 3]; N]);
     let (mut dilatation_u, mut dilatation_q, mut volume) = (0.0, 0.0, 0.0);
     for point in points {
-        let (grad_u, grad_q) = (displacement_gradient(point, u), displacement_gradient(point, q));
+        let (grad_u, grad_q) = (point.gradient(u), point.gradient(q));
         let (trace_u, trace_q) =
             (grad_u[0][0] + grad_u[1][1] + grad_u[2][2], grad_q[0][0] + grad_q[1][1] + grad_q[2][2]);
         volume += point.volume;
         dilatation_u += point.volume * trace_u;
         dilatation_q += point.volume * trace_q;
-        for (node, g) in point.gradients.iter().enumerate() {
-            let along = |gradient: &[[f64; 3]; 3]| (0..3).map(|i| gradient[i][2] * g[i]).sum::<f64>();
-            moved_u[node] += point.volume * (trace_u * g[2] - along(&grad_u));
-            moved_q[node] += point.volume * (trace_q * g[2] - along(&grad_q));
-            moved_volume[node] += point.volume * g[2];
+        for (v, g) in point.gradients.iter().enumerate() {
+            for a in 0..3 {
+                let along = |gradient: &[[f64; 3]; 3]| (0..3).map(|i| gradient[i][a] * g[i]).sum::<f64>();
+                moved_u[v][a] += point.volume * (trace_u * g[a] - along(&grad_u));
+                moved_q[v][a] += point.volume * (trace_q * g[a] - along(&grad_q));
+                moved_volume[v][a] += point.volume * g[a];
+            }
         }
     }
     let factor = bulk_modulus / volume;
-    for (node, result) in result.iter_mut().enumerate() {
-        let products = moved_u[node] * dilatation_q + dilatation_u * moved_q[node];
-        *result += factor * (products - dilatation_u * dilatation_q * moved_volume[node] / volume);
+    for (v, result) in result.iter_mut().enumerate() {
+        for (a, result) in result.iter_mut().enumerate() {
+            let products = moved_u[v][a] * dilatation_q + dilatation_u * moved_q[v][a];
+            *result += factor * (products - dilatation_u * dilatation_q * moved_volume[v][a] / volume);
+        }
+    }
+}
+
+/// Adds the change of κ D(u) D/V while the nodes move with the velocities x′.
+pub fn add_moved_forces<const N: usize>(
+    points: &[GaussPoint<f64, N>],
+    bulk_modulus: f64,
+    u: &[f64],
+    velocities: &[f64],
+    forces: &mut [f64],
+) {
+    let (divergence, volume) = divergence(points);
+    let (mut dilatation, mut moved_dilatation, mut moved_volume) = (0.0, 0.0, 0.0);
+    let mut moved = [[0.0; 3]; N];
+    for point in points {
+        let (grad_u, grad_v) = (point.gradient(u), point.gradient(velocities));
+        let trace = grad_u[0][0] + grad_u[1][1] + grad_u[2][2];
+        let dilation = grad_v[0][0] + grad_v[1][1] + grad_v[2][2];
+        let transported: f64 = (0..3).map(|i| (0..3).map(|a| grad_u[i][a] * grad_v[a][i]).sum::<f64>()).sum();
+        dilatation += point.volume * trace;
+        moved_dilatation += point.volume * (trace * dilation - transported);
+        moved_volume += point.volume * dilation;
+        for (moved, g) in moved.iter_mut().zip(&point.gradients) {
+            for (k, moved) in moved.iter_mut().enumerate() {
+                let turned: f64 = (0..3).map(|a| g[a] * grad_v[a][k]).sum();
+                *moved += point.volume * (dilation * g[k] - turned);
+            }
+        }
+    }
+    let factor = bulk_modulus / volume;
+    let own = moved_dilatation - dilatation * moved_volume / volume;
+    for (force, (d, moved)) in forces.iter_mut().zip(divergence.as_flattened().iter().zip(moved.as_flattened())) {
+        *force += factor * (own * d + dilatation * moved);
     }
 }

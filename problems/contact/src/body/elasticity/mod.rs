@@ -1,12 +1,23 @@
-//! Trilinear isotropic elasticity on bricks.
+//! Isotropic linear elasticity on hexahedra and tetrahedra.
+//!
+//! ```text
+//! nodes of a cell ─ shape functions at integration points (hex8, tet10 → gauss) ─┬─ stiffness and its derivative by positions
+//!                                                                                ├─ mean dilatation
+//! nodes of a face ─ facet: loads and areas                                       └─ stress, von Mises stress
+//! ```
 
-pub mod brick;
+pub(crate) mod cell;
+pub(crate) mod facet;
+pub(crate) mod gauss;
 pub mod hex8;
-pub mod stress;
-pub(crate) mod traction;
-
 mod material;
 mod mean_dilatation;
-pub(crate) mod von_mises;
+pub mod stiffness;
+pub mod stress;
+pub mod tet10;
+#[cfg(test)]
+mod tests;
 
+pub use cell::{CellNodes, StressedCell};
+pub use gauss::GaussPoint;
 pub use material::{Formulation, Material};

@@ -1,27 +1,18 @@
-//! A block of bricks in columns over a uniform grid between a lower and an upper surface.
+//! A block of bricks between two surfaces as a mesh.
 //!
 //! ```text
-//! x₁ = i·a/n₁,  x₂ = j·b/n₂,  x₃ = lower_ij + (upper_ij − lower_ij)·k/n₃                              method.md section 2
+//! x₁ = i·a/n₁,  x₂ = j·b/n₂,  x₃ = lower_ij + (upper_ij − lower_ij)·k/n₃       node (i·(n₂ + 1) + j)·(n₃ + 1) + k   method.md section 2
 //! ```
 
-use crate::body::elasticity::brick::Nodes;
-use crate::error::ContactError;
+use crate::body::mesh::{CellFace, CellKind, Grid, Mesh};
+use crate::error::SceneError;
 use crate::lattice;
+use serde::{Deserialize, Serialize};
 
-/// Topology and plan of a block: numbers of bricks and the size of its base.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grid {
-    /// Bricks along x₁, x₂, x₃.
-    pub cells: [usize; 3],
-    /// Lengths a, b of the base along x₁, x₂, mm.
-    pub size: [f64; 2],
-}
-
-/// A face of a body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+/// A face of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "FaceName", transform = crate::schema::names_only))]
-pub enum Face {
+pub enum BlockFace {
     /// x₁ = 0.
     X1Min,
     /// x₁ = a.
@@ -36,143 +27,70 @@ pub enum Face {
     Top,
 }
 
-impl Grid {
-    /// Nodes along the three axes.
-    pub fn nodes(&self) -> [usize; 3] {
-        self.cells.map(|cells| cells + 1)
-    }
+impl BlockFace {
+    /// All faces of a block.
+    pub const ALL: [Self; 6] = [Self::X1Min, Self::X1Max, Self::X2Min, Self::X2Max, Self::Bottom, Self::Top];
 
-    /// Number of nodes of the block.
-    pub fn node_count(&self) -> usize {
-        self.nodes().iter().product()
-    }
-
-    /// Index of node (i, j, k).
-    pub fn node(&self, node: [usize; 3]) -> usize {
-        lattice::index(self.nodes(), node)
-    }
-
-    /// Number of bricks of the block.
-    pub fn brick_count(&self) -> usize {
-        self.cells.iter().product()
-    }
-
-    /// Index of brick (i, j, k).
-    pub fn brick(&self, brick: [usize; 3]) -> usize {
-        lattice::index(self.cells, brick)
-    }
-
-    /// All bricks (i, j, k) in index order.
-    pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        lattice::points([0; 3], self.cells)
-    }
-
-    /// Indices of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
-    pub fn brick_nodes(&self, brick: [usize; 3]) -> [usize; 8] {
-        lattice::corners(brick).map(|node| self.node(node))
-    }
-
-    /// Number of vertical columns of nodes, the points of a surface.
-    pub fn column_count(&self) -> usize {
-        (self.cells[0] + 1) * (self.cells[1] + 1)
-    }
-
-    /// Index of the column of nodes (i, j).
-    pub fn column(&self, i: usize, j: usize) -> usize {
-        i * (self.cells[1] + 1) + j
-    }
-
-    /// Position (x₁, x₂) of column (i, j), mm.
-    pub fn position(&self, i: usize, j: usize) -> [f64; 2] {
-        [self.size[0] * i as f64 / self.cells[0] as f64, self.size[1] * j as f64 / self.cells[1] as f64]
-    }
-
-    /// All columns (i, j) in index order.
-    pub fn columns(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let rows = self.cells[1] + 1;
-        (0..self.column_count()).map(move |column| (column / rows, column % rows))
-    }
-
-    /// Tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners; mm².
-    pub(crate) fn tributary_area(&self, i: usize, j: usize) -> f64 {
-        let share = |index: usize, cells: usize| if index == 0 || index == cells { 0.5 } else { 1.0 };
-        let cell = self.size[0] / self.cells[0] as f64 * self.size[1] / self.cells[1] as f64;
-        cell * share(i, self.cells[0]) * share(j, self.cells[1])
-    }
-
-    /// The axis normal to a face, and the index along this axis of the layer of nodes on the face.
-    pub fn side(&self, face: Face) -> (usize, usize) {
-        match face {
-            Face::X1Min => (0, 0),
-            Face::X1Max => (0, self.cells[0]),
-            Face::X2Min => (1, 0),
-            Face::X2Max => (1, self.cells[1]),
-            Face::Bottom => (2, 0),
-            Face::Top => (2, self.cells[2]),
+    /// Its name in scenes and meshes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X1Min => "x1-min",
+            Self::X1Max => "x1-max",
+            Self::X2Min => "x2-min",
+            Self::X2Max => "x2-max",
+            Self::Bottom => "bottom",
+            Self::Top => "top",
         }
     }
 
-    /// Whether node (i, j, k) lies on a face.
-    pub(crate) fn is_on(&self, face: Face, node: [usize; 3]) -> bool {
-        let (axis, level) = self.side(face);
-        node[axis] == level
-    }
-}
-
-/// A grid with its two surfaces: the geometry of a body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Block {
-    /// Numbers of bricks and the plan of the block.
-    pub grid: Grid,
-    /// Height of the lower surface per column of nodes, mm.
-    pub lower: Vec<f64>,
-    /// Height of the upper surface per column of nodes, mm.
-    pub upper: Vec<f64>,
-}
-
-impl Block {
-    /// Coordinates of node (i, j, k), mm.
-    pub fn coordinates(&self, [i, j, k]: [usize; 3]) -> [f64; 3] {
-        let column = self.grid.column(i, j);
-        let share = k as f64 / self.grid.cells[2] as f64;
-        let [x1, x2] = self.grid.position(i, j);
-        [x1, x2, self.lower[column] + (self.upper[column] - self.lower[column]) * share]
-    }
-
-    /// Coordinates of all nodes in index order, mm.
-    pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
-        lattice::points([0; 3], self.grid.nodes()).map(|node| self.coordinates(node))
-    }
-
-    /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
-    pub fn brick(&self, brick: [usize; 3]) -> Nodes<f64> {
-        lattice::corners(brick).map(|node| self.coordinates(node))
-    }
-
-    /// Volume of its bricks, mm³: they interpolate the heights of the columns bilinearly, so that it is Σ A · height.
-    pub fn volume(&self) -> f64 {
-        let height = |(i, j): (usize, usize)| self.upper[self.grid.column(i, j)] - self.lower[self.grid.column(i, j)];
-        self.grid.columns().map(|column| self.grid.tributary_area(column.0, column.1) * height(column)).sum()
-    }
-
-    /// Refuses a block with an inverted or flat brick. `body` is its number in messages (1 lower, 2 upper).
-    ///
-    /// Columns are vertical over a uniform grid, so det(∂x/∂ξ) of a brick interpolates h₁h₂·(height of the column)/n₃
-    /// between its four columns: it is positive everywhere exactly if all columns have positive height.
-    ///
-    /// # Errors
-    /// [`ContactError::InvertedElement`] naming a brick at the first such column.
-    pub fn checked(self, body: usize) -> Result<Self, ContactError> {
-        let [n1, n2, n3] = self.grid.cells;
-        let base = self.grid.size[0] / n1 as f64 * self.grid.size[1] / n2 as f64;
-        for (i, j) in self.grid.columns() {
-            let column = self.grid.column(i, j);
-            let determinant = base * (self.upper[column] - self.lower[column]) / n3 as f64;
-            if !(determinant > 0.0 && determinant.is_finite()) {
-                let (i, j) = (i.min(n1 - 1), j.min(n2 - 1));
-                return Err(ContactError::InvertedElement { body, i, j, k: 0, determinant });
-            }
+    /// The axis normal to the face, whether it is the far end of it, and the face of a brick that lies there.
+    fn side(self) -> (usize, bool, u8) {
+        match self {
+            Self::X1Min => (0, false, 5),
+            Self::X1Max => (0, true, 3),
+            Self::X2Min => (1, false, 2),
+            Self::X2Max => (1, true, 4),
+            Self::Bottom => (2, false, 0),
+            Self::Top => (2, true, 1),
         }
-        Ok(self)
     }
+}
+
+impl From<BlockFace> for String {
+    fn from(face: BlockFace) -> Self {
+        face.name().into()
+    }
+}
+
+/// Corners (i, j, k) of a brick in the order of [`CellKind::Hex8`], seen from its first one.
+const CORNERS: [[usize; 3]; 8] =
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+
+/// The mesh of a block with six named faces, divided into `subdomains` boxes of bricks per axis, which divide their
+/// numbers; heights of both surfaces per column of nodes, mm.
+///
+/// # Errors
+/// As [`Mesh::new`].
+pub fn block(grid: &Grid, subdomains: [usize; 3], lower: &[f64], upper: &[f64]) -> Result<Mesh, SceneError> {
+    let position = |[i, j, k]: [usize; 3]| {
+        let (column, share) = (grid.column(i, j), k as f64 / grid.cells[2] as f64);
+        let [x1, x2] = grid.position(i, j);
+        [x1, x2, lower[column] + (upper[column] - lower[column]) * share]
+    };
+    let nodes = lattice::points([0; 3], grid.nodes()).map(position).collect();
+    let bricks = || lattice::points([0; 3], grid.cells);
+    let corners = |brick| (CellKind::Hex8, CORNERS.map(|corner| grid.node(lattice::add(brick, corner))));
+    let boxes: [usize; 3] = std::array::from_fn(|axis| grid.cells[axis] / subdomains[axis]);
+    let piece = |brick: [usize; 3]| {
+        lattice::index(subdomains, std::array::from_fn(|axis| brick[axis] / boxes[axis])) as u32
+    };
+    let mut mesh = Mesh::new(nodes, bricks().map(corners))?.with_pieces(bricks().map(piece).collect())?;
+    for name in BlockFace::ALL {
+        let (axis, far, face) = name.side();
+        let level = if far { grid.cells[axis] - 1 } else { 0 };
+        let on_side = bricks().enumerate().filter(|(_, brick)| brick[axis] == level);
+        let faces = on_side.map(|(cell, _)| CellFace { cell: cell as u32, face }).collect();
+        mesh = mesh.with_face(name, faces)?;
+    }
+    Ok(mesh)
 }

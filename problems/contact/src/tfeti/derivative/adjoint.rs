@@ -9,7 +9,7 @@
 //! and conjugate gradients do. Cycles follow each other until the residual, computed afresh, is small; products with
 //! search directions are in single precision until a cycle shows that it is too coarse for the system.
 
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::error::ContactError;
 use crate::linear::gmres::{MAX_STALLED_ITERATIONS, gmres};
 use crate::linear::pcg::pcg;
@@ -18,7 +18,7 @@ use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
 use crate::tfeti::derivative::displacement_load::DisplacementLoad;
-use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
+use crate::tfeti::dual::{ActiveSet, Precision, TornContact};
 use crate::tfeti::torn::{RowVector, TornVector};
 
 #[derive(Debug, Clone)]

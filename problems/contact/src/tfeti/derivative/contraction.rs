@@ -6,14 +6,15 @@
 //! Every step is one projected conjugate gradient solve; the radius is that of the Hessenberg matrix, exact (up to the
 //! accuracy of the solves) when there are no more sliding nodes than steps.
 
+use crate::equilibrium::ContactPoint;
 use crate::equilibrium::certificate::wedging;
 use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::error::ContactError;
 use crate::linear::pcg::pcg;
 use crate::linear::sums::Whole;
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::dual::{ActiveSet, Friction, TornContact, TornSolution};
+use crate::tfeti::dual::{ActiveSet, TornContact, TornSolution};
 
 /// Number of Arnoldi steps after which the estimate stands.
 const MAX_STEPS: usize = 12;
@@ -124,12 +125,12 @@ impl TornContact<'_> {
         }
     }
 
-    /// First row, number of tangential rows and direction of the sliding nodes.
-    fn sliding(&self, linearizations: &[Linearization]) -> Vec<(usize, usize, [f64; 2])> {
+    /// The sliding nodes with their directions.
+    fn sliding(&self, linearizations: &[Linearization]) -> Vec<(&ContactPoint, [f64; 2])> {
         let nodes = self.boundary.points.iter().zip(linearizations);
         nodes
             .filter_map(|(point, linearization)| match linearization {
-                Linearization::Slip { direction, .. } => Some((point.start, point.tangents.len(), *direction)),
+                Linearization::Slip { direction, .. } => Some((point, *direction)),
                 _ => None,
             })
             .collect()
@@ -140,16 +141,16 @@ impl TornContact<'_> {
     fn bound_change(
         &self,
         active: &ActiveSet<'_>,
-        sliding: &[(usize, usize, [f64; 2])],
+        sliding: &[(&ContactPoint, [f64; 2])],
         bounds: &[f64],
         reduction: f64,
         max_krylov: usize,
     ) -> (Vec<f64>, f64) {
         let rows = &active.rows;
         let mut driven = self.zeros();
-        for ((start, count, direction), bound) in sliding.iter().zip(bounds) {
-            for tangent in 0..*count {
-                driven.contact_mut()[start + 1 + tangent] = bound * direction[tangent];
+        for ((point, direction), bound) in sliding.iter().zip(bounds) {
+            for (tangent, entry) in direction.iter().enumerate().take(point.tangents) {
+                driven.contact_mut()[point.start + 1 + tangent] = bound * entry;
             }
         }
         let resultant: Vec<f64> = self.space.resultant(&driven).into_iter().map(|entry| -entry).collect();
@@ -172,7 +173,7 @@ impl TornContact<'_> {
         );
         add_scaled(&mut unknowns, 1.0, &krylov.solution);
         let multipliers = rows.trial(&unknowns);
-        let change = |(start, ..): &(usize, usize, [f64; 2])| self.boundary.friction * multipliers.contact()[*start];
+        let change = |(point, _): &(&ContactPoint, _)| point.friction * multipliers.contact()[point.start];
         (sliding.iter().map(change).collect(), krylov.residual / size)
     }
 }

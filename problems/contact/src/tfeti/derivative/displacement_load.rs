@@ -29,8 +29,9 @@ impl DisplacementLoad {
         let terms: Vec<f64> = model
             .subdomains
             .iter()
-            .flat_map(|subdomain| {
-                let dofs = subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count();
+            .enumerate()
+            .flat_map(|(index, _)| {
+                let dofs = operator.system.dofs(index);
                 let products = forces.0[dofs.clone()].iter().zip(&displacement.0[dofs]).map(|(l, u)| l * u);
                 products.fold([0.0; 2], |[sum, absolute], term| [sum + term, absolute + term.abs()])
             })

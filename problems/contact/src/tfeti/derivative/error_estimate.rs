@@ -34,7 +34,7 @@ impl TornContact<'_> {
             let rows = point.rows();
             let outside = &forces[rows.clone()];
             let mut inside = vec![0.0; outside.len()];
-            law::project(outside, self.boundary.friction, &mut inside);
+            law::project(outside, point.friction, &mut inside);
             let moved: Vec<f64> = inside.iter().zip(outside).map(|(inside, force)| inside - force).collect();
             let weights: Vec<f64> = rows.clone().map(|row| j[row] - image[row] - eta[row] / self.stiffness).collect();
             let term = dot(&weights, &residual[rows.clone()]) + dot(&j[rows], &moved);

@@ -1,9 +1,9 @@
 //! What is asked of a solved shape: how its forces change, and what its residual does to a cost.
 //!
 //! ```text
-//! j = ∂J/∂λ ─┬─ adjoint: q, p ─┬─ shape derivative: ∂J/∂(column heights)
+//! j = ∂J/∂λ ─┬─ adjoint: q, p ─┬─ shape derivative: ∂J/∂(positions of the nodes)
 //! l = ∂J/∂u ─┘                 └─ error estimate: J(state) − J(exact)
-//! changes of the column heights ─ shape loads: r, δe ─ tangents: δλ, changes of the openings, all columns in lockstep
+//! velocities of the nodes ─ shape loads: r, δe ─ tangents: δλ, changes of the openings, all columns in lockstep
 //! derivatives of the state ─ contraction: spectral radius of Φ′
 //! ```
 
@@ -17,6 +17,5 @@ mod shape_loads;
 mod tangents;
 
 pub use displacement_load::DisplacementLoad;
-pub use shape_derivative::height_sensitivities;
+pub use shape_derivative::{SolvedShape, shape_derivative};
 pub(crate) use tangents::MAX_COLUMNS;
-pub use tangents::MovedSurface;

@@ -1,18 +1,21 @@
-//! The forces that changes of the column heights cause on the torn lower body.
+//! The forces that changes of the shape cause on the torn bodies.
 //!
 //! ```text
-//! r = −∂(K u − f) per subdomain of the lower body,   δe = Rᵀ r
+//! r = −∂(K u − f) per subdomain of the lower body, −Σ_rows λ_r ∂d_r at the contact nodes,     δe = Rᵀ r
 //! ```
-//! The adjoint counterpart is [`height_sensitivities`](super::height_sensitivities).
+//! The adjoint counterpart is [`shape_derivative`](super::shape_derivative()).
 
-use crate::body::mesh::Block;
 use crate::body::shape_force::shape_forces;
+use crate::equilibrium::RowChange;
+use crate::equilibrium::modes::MOTIONS;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
 use crate::linear::real::Real;
-use crate::tfeti::torn::{TornModel, TornSystem, TornVector};
+use crate::shape::Velocities;
+use crate::tfeti::derivative::shape_derivative::SolvedShape;
+use crate::tfeti::torn::{TornModel, TornSystem, parts_mut};
 use rayon::prelude::*;
 
-/// Torn forces and their resultants along the rigid motions, one column per change of the heights.
+/// Torn forces and their resultants along the rigid motions, one column per change of the shape.
 pub struct ShapeLoads<E, const N: usize> {
     /// r over the torn dofs of this process, N.
     pub forces: Vec<Row<E, N>>,
@@ -21,42 +24,64 @@ pub struct ShapeLoads<E, const N: usize> {
 }
 
 impl<E: Real, const N: usize> ShapeLoads<E, N> {
-    /// The loads of at most 8N changes (mm, all columns of the body); `lower` is the lower body, `displacement` is u.
+    /// The loads of at most 8N fields of velocities, with the changes of the contact rows along them.
     pub fn new(
         model: &TornModel,
         system: &TornSystem,
-        lower: &Block,
-        displacement: &TornVector,
-        changes: &[Vec<f64>],
+        shape: SolvedShape<'_>,
+        velocities: &Velocities<'_>,
+        changes: &[Vec<RowChange>],
     ) -> Self {
-        debug_assert!(changes.len() <= LANES * N);
-        let scene = &model.problem.scene.lower;
-        let mut forces = vec![Row::ZERO; model.interface.owned_count()];
-        let mut resultants = vec![Row::ZERO; 6 * system.parts.len()];
-        let parts = forces.par_chunks_mut(model.pattern.pattern.dimension()).zip(resultants.par_chunks_mut(6));
-        parts.zip(model.subdomains.par_iter().zip(&system.parts)).for_each(
-            |((forces, resultants), (subdomain, part))| {
-                if subdomain.body != 0 {
-                    return;
-                }
-                let u = &displacement.0[subdomain.first_dof..subdomain.first_dof + forces.len()];
-                let columns = shape_forces(lower, &subdomain.place, &scene.material, &scene.loads, u, changes);
-                for (dof, force) in forces.iter_mut().enumerate() {
-                    columns.iter().enumerate().for_each(|(column, values)| force.set(column, values[dof]));
-                }
-                vectorized(
-                    #[inline(always)]
-                    || {
-                        for (resultant, mode) in resultants.iter_mut().zip(&part.modes) {
-                            for (value, force) in mode.iter().zip(&*forces) {
-                                resultant.accumulate(*value, force);
-                            }
+        debug_assert!(velocities.count() <= LANES * N);
+        let mut forces = vec![Row::<E, N>::ZERO; model.interface.owned_count()];
+        let parts = parts_mut(&mut forces, &system.starts).into_par_iter();
+        parts.zip(&model.subdomains).enumerate().for_each(|(index, (forces, subdomain))| {
+            if subdomain.body != 0 {
+                return;
+            }
+            let (body, piece) = model.piece(index);
+            let u = &shape.displacement.0[system.dofs(index)];
+            let columns = shape_forces(body, piece, shape.lower, u, velocities);
+            for (dof, force) in forces.iter_mut().enumerate() {
+                columns.iter().enumerate().for_each(|(column, values)| force.set(column, values[dof]));
+            }
+        });
+        if !model.problem.geometry.is_fixed() {
+            for (column, changes) in changes.iter().enumerate() {
+                let vectors = contact_vectors(model, shape, changes);
+                model.spread_contact(&vectors, |dof, force| {
+                    let sum = forces[dof].get(column) + force;
+                    forces[dof].set(column, sum);
+                });
+            }
+        }
+        let mut resultants = vec![Row::<E, N>::ZERO; MOTIONS * system.parts.len()];
+        let parts = resultants.par_chunks_mut(MOTIONS).zip(&system.parts).enumerate();
+        parts.for_each(|(index, (resultants, part))| {
+            let forces = &forces[system.dofs(index)];
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (resultant, mode) in resultants.iter_mut().zip(&part.modes) {
+                        for (value, force) in mode.iter().zip(forces) {
+                            resultant.accumulate(*value, force);
                         }
-                    },
-                );
-            },
-        );
-        let resultants = model.clusters.gather(&system.cluster_resultants(resultants), 6);
+                    }
+                },
+            );
+        });
+        let resultants = model.clusters.gather(&system.cluster_resultants(resultants), MOTIONS);
         Self { forces, resultants }
     }
+}
+
+/// −Σ_rows λ_r ∂d_r of every contact node.
+fn contact_vectors(model: &TornModel, shape: SolvedShape<'_>, changes: &[RowChange]) -> Vec<[f64; 3]> {
+    let lambda = shape.multipliers.contact();
+    let nodes = model.problem.boundary.points.iter().zip(&model.constraints.normalisation).zip(changes);
+    let of_node = |((point, nu), change): ((&crate::equilibrium::ContactPoint, &f64), &RowChange)| {
+        let rows = || point.rows().zip(&change.directions);
+        std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>() / nu)
+    };
+    nodes.map(of_node).collect()
 }

@@ -1,17 +1,16 @@
 //! Forward derivatives of a TFETI state: all columns in lockstep; method.md (5.4).
 //!
 //! ```text
-//! r = −∂(K u − f),   δe = Rᵀ r,   δd = B K⁺ r − ∂g
+//! r = −∂(K u + Bᵀλ − f),   δe = Rᵀ r,   δd = B K⁺ r + ∂B u − ∂g
 //! Qᵀ F T y + Δ y − QᵀGᵀ δa = Qᵀ δd,   G T y = δe,      δλ = T y,   δw = δd − F δλ + Gᵀ δa
 //! ```
 //! The system of a Newton step with another right side; the adjoint solves with its transpose. With G T y = δe the
-//! forces r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) − ∂g is one product, free
+//! forces r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) + ∂B u − ∂g is one product, free
 //! of rigid parts that would cancel. Directions are in single precision, and so is all else where the tolerance allows
 //! it; otherwise the residual is computed afresh in double precision after every cycle.
 
-use crate::body::mesh::Block;
-use crate::equilibrium::Tangents;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::{RowChange, Tangents};
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
 use crate::linear::entry::{Entry, LANES, Row};
@@ -20,20 +19,11 @@ use crate::linear::real::Real;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
+use crate::tfeti::derivative::shape_derivative::SolvedShape;
 use crate::tfeti::derivative::shape_loads::ShapeLoads;
-use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
-use crate::tfeti::torn::{RowVector, TornVector};
+use crate::tfeti::dual::{ActiveSet, Precision, TornContact};
+use crate::tfeti::torn::{RowVector, TornModel};
 use std::cell::RefCell;
-
-/// The surface that moves, and the state that it moves in.
-#[derive(Debug, Clone, Copy)]
-pub struct MovedSurface<'a> {
-    pub lower: &'a Block,
-    /// u over torn dofs, mm.
-    pub displacement: &'a TornVector,
-    /// The derivative selected at every contact node.
-    pub linearizations: &'a [Linearization],
-}
 
 /// Columns that advance in lockstep: the sums of a tile of the subdomain solves then fill the registers.
 pub(crate) const MAX_COLUMNS: usize = 5 * LANES;
@@ -48,12 +38,12 @@ const MAX_ROUNDING_SHARE: f64 = 0.1;
 /// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 400;
 
-/// The system of at most 8N changes of the heights, with residuals in precision D.
+/// The system of at most 8N changes of the shape, with residuals in precision D.
 struct TangentSystem<'a, D, const N: usize> {
     contact: &'a TornContact<'a>,
     active: &'a ActiveSet<'a>,
     loads: ShapeLoads<D, N>,
-    /// −∂g in the rows of the contact nodes, mm.
+    /// ∂B u − ∂g over the packed contact rows, mm.
     approaches: Vec<Row<D, N>>,
     count: usize,
 }
@@ -72,24 +62,25 @@ struct TangentIterate<D, const N: usize> {
 }
 
 impl TornContact<'_> {
-    /// Tangents for changes of the heights of the contact nodes, mm.
+    /// Tangents for changes of the controls.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] when a column does not reach the tolerance, [`ContactError::Unheld`].
     pub fn tangents(
         &self,
-        surface: MovedSurface<'_>,
+        shape: SolvedShape<'_>,
+        linearizations: &[Linearization],
         changes: &[Vec<f64>],
         tolerance: f64,
     ) -> Result<Tangents, ContactError> {
-        let active = self.active_set(surface.linearizations.to_vec(), Friction::Coulomb)?;
+        let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
         let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual: 0.0, applications: 0 };
         let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
         for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
             match batch.len().div_ceil(LANES) {
-                0 | 1 => self.tangent_batch::<1>(&active, surface, batch, tolerance, &mut tangents)?,
-                2 | 3 => self.tangent_batch::<3>(&active, surface, batch, tolerance, &mut tangents)?,
-                _ => self.tangent_batch::<5>(&active, surface, batch, tolerance, &mut tangents)?,
+                0 | 1 => self.tangent_batch::<1>(&active, shape, batch, tolerance, &mut tangents)?,
+                2 | 3 => self.tangent_batch::<3>(&active, shape, batch, tolerance, &mut tangents)?,
+                _ => self.tangent_batch::<5>(&active, shape, batch, tolerance, &mut tangents)?,
             }
         }
         tangents.applications = self.operator.applications();
@@ -100,19 +91,19 @@ impl TornContact<'_> {
     fn tangent_batch<const N: usize>(
         &self,
         active: &ActiveSet<'_>,
-        surface: MovedSurface<'_>,
+        shape: SolvedShape<'_>,
         changes: &[Vec<f64>],
         tolerance: f64,
         tangents: &mut Tangents,
     ) -> Result<(), ContactError> {
         if self.single_is_enough(tolerance) {
-            let system = TangentSystem::<f32, N>::new(self, active, surface, changes);
+            let system = TangentSystem::<f32, N>::new(self, active, shape, changes);
             if let Some(iterate) = system.solve_once(tolerance) {
                 system.append(&iterate, tangents);
                 return Ok(());
             }
         }
-        let system = TangentSystem::<f64, N>::new(self, active, surface, changes);
+        let system = TangentSystem::<f64, N>::new(self, active, shape, changes);
         let iterate = system.solve_in_cycles(tolerance)?;
         system.append(&iterate, tangents);
         Ok(())
@@ -130,17 +121,15 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
     fn new(
         contact: &'a TornContact<'a>,
         active: &'a ActiveSet<'a>,
-        surface: MovedSurface<'_>,
+        shape: SolvedShape<'_>,
         changes: &[Vec<f64>],
     ) -> Self {
         let operator = &contact.operator;
-        let loads = ShapeLoads::new(operator.model, operator.system, surface.lower, surface.displacement, changes);
-        // The gap F² − F_α falls as the surface rises.
-        let mut approaches = vec![Row::ZERO; contact.boundary.points.len()];
-        for (column, change) in changes.iter().enumerate() {
-            let nodes = approaches.iter_mut().zip(change).zip(&operator.model.constraints.normalisation);
-            nodes.for_each(|((approach, height), nu)| approach.set(column, height / nu));
-        }
+        let velocities = operator.model.problem.map.velocities(changes);
+        let of_column = |column| shape.rows.changes(contact.boundary, &velocities, column);
+        let rows: Vec<Vec<RowChange>> = (0..changes.len()).map(of_column).collect();
+        let loads = ShapeLoads::new(operator.model, operator.system, shape, &velocities, &rows);
+        let approaches = approaches(operator.model, shape, &rows);
         Self { contact, active, loads, approaches, count: changes.len() }
     }
 
@@ -150,8 +139,8 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         self.active.enforce(&mut unknowns, &self.loads.resultants);
         let mut torn = vec![Row::ZERO; operator.model.interface.torn_count()];
         let mut jumps = operator.free_jumps(&self.loads.forces, &rows.trial(&unknowns), &mut torn, self.count);
-        for (point, approach) in self.contact.boundary.points.iter().zip(&self.approaches) {
-            jumps.contact_mut()[point.start].add_scaled(1.0, approach);
+        for (jump, approach) in jumps.contact_mut().iter_mut().zip(&self.approaches) {
+            jump.add_scaled(1.0, approach);
         }
         let mut projected = rows.test_transposed(&jumps);
         rows.add_compliance(&unknowns, &mut projected, -1.0);
@@ -286,6 +275,27 @@ impl<D, const N: usize> TangentIterate<D, N> {
     fn sizes(&self) -> Row<f64, N> {
         self.residuals.zip(&self.natural, |size, all| size.max(SMALLEST_PROJECTED_SHARE * all))
     }
+}
+
+/// ∂B u − ∂g over the packed contact rows.
+fn approaches<E: Real, const N: usize>(
+    model: &TornModel,
+    shape: SolvedShape<'_>,
+    changes: &[Vec<RowChange>],
+) -> Vec<Row<E, N>> {
+    let mut approaches = vec![Row::ZERO; model.problem.boundary.row_count];
+    let turned = !model.problem.geometry.is_fixed();
+    let u = if turned { model.contact_displacements(shape.displacement) } else { Vec::new() };
+    for (index, (point, nu)) in model.problem.boundary.points.iter().zip(&model.constraints.normalisation).enumerate() {
+        for (column, change) in changes.iter().map(|nodes| &nodes[index]).enumerate() {
+            for (place, (row, d)) in point.rows().zip(&change.directions).enumerate() {
+                let gap = if place == 0 { change.gap } else { 0.0 };
+                let along = if turned { (0..3).map(|axis| d[axis] * u[index][axis]).sum::<f64>() } else { 0.0 };
+                approaches[row].set(column, (along - gap) / nu);
+            }
+        }
+    }
+    approaches
 }
 
 /// The largest residual over its size; NaN if a residual is.

@@ -8,19 +8,10 @@
 //! ```
 //! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is a spring in series.
 
-use crate::equilibrium::ContactBoundary;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::{ContactBoundary, ContactPoint};
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::linear::entry::Entry;
 use crate::tfeti::torn::RowVector;
-
-/// What bounds the traction of a slip node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Friction {
-    /// The normal force of the node times 𝓕.
-    Coulomb,
-    /// A given bound, which does not change with the unknowns.
-    Tresca,
-}
 
 /// Row structure of one choice of derivatives.
 #[derive(Debug)]
@@ -31,8 +22,8 @@ pub struct ActiveRows<'a> {
     starts: Vec<usize>,
     dimension: usize,
     stiffness: f64,
-    /// The friction coefficient 𝓕 in T.
-    trial_friction: f64,
+    /// What bounds the traction in T: the friction coefficients 𝓕, or 0.
+    friction: Friction,
 }
 
 impl<'a> ActiveRows<'a> {
@@ -51,14 +42,10 @@ impl<'a> ActiveRows<'a> {
             dimension += match linearization {
                 Linearization::Open => 0,
                 Linearization::Stick => point.row_count(),
-                Linearization::Slip { .. } => point.tangents.len(),
+                Linearization::Slip { .. } => point.tangents,
             };
         }
-        let trial_friction = match friction {
-            Friction::Coulomb => boundary.friction,
-            Friction::Tresca => 0.0,
-        };
-        Self { boundary, equality_count, linearizations, starts, dimension, stiffness, trial_friction }
+        Self { boundary, equality_count, linearizations, starts, dimension, stiffness, friction }
     }
 
     /// Number of unknowns y.
@@ -66,46 +53,47 @@ impl<'a> ActiveRows<'a> {
         self.dimension
     }
 
-    /// Calls `visit(node's first contact row, its number of rows, its first unknown, derivative)` per closed node.
-    fn closed_nodes(&self, mut visit: impl FnMut(usize, usize, usize, &Linearization)) {
+    /// Calls `visit(node, its first unknown, derivative)` per closed node.
+    fn closed_nodes(&self, mut visit: impl FnMut(&ContactPoint, usize, &Linearization)) {
         for ((point, linearization), &start) in self.boundary.points.iter().zip(&self.linearizations).zip(&self.starts)
         {
             if *linearization != Linearization::Open {
-                visit(point.start, point.row_count(), start, linearization);
+                visit(point, start, linearization);
             }
         }
     }
 
     /// The product T y.
     pub fn trial<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
-        self.expand(unknowns, self.trial_friction)
+        self.expand(unknowns, self.friction)
     }
 
     /// The product Q y.
     pub fn test<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
-        self.expand(unknowns, 0.0)
+        self.expand(unknowns, Friction::Tresca)
     }
 
     /// The product Tᵀ r.
     pub fn trial_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
-        self.restrict(rows, self.trial_friction)
+        self.restrict(rows, self.friction)
     }
 
     /// The product Qᵀ r.
     pub fn test_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
-        self.restrict(rows, 0.0)
+        self.restrict(rows, Friction::Tresca)
     }
 
-    /// (Q + friction·e⊗n) y.
-    fn expand<V: Entry>(&self, unknowns: &[V], friction: f64) -> RowVector<V> {
+    /// (Q + 𝓕 e⊗n) y for Coulomb's law, else Q y.
+    fn expand<V: Entry>(&self, unknowns: &[V], friction: Friction) -> RowVector<V> {
         let mut result = vec![V::ZERO; self.equality_count + self.boundary.row_count];
         let (equality, rows) = result.split_at_mut(self.equality_count);
         equality.copy_from_slice(&unknowns[..self.equality_count]);
-        self.closed_nodes(|row, count, unknown, linearization| match *linearization {
+        self.closed_nodes(|point, unknown, linearization| match *linearization {
             Linearization::Slip { direction, ratio } => {
+                let (row, count) = (point.start, point.row_count());
                 rows[row] = unknowns[unknown];
                 for tangent in 1..count {
-                    rows[row + tangent].add_scaled(friction * direction[tangent - 1], &unknowns[unknown]);
+                    rows[row + tangent].add_scaled(friction.of(point) * direction[tangent - 1], &unknowns[unknown]);
                 }
                 if count == 3 {
                     let across = &unknowns[unknown + 1];
@@ -113,17 +101,17 @@ impl<'a> ActiveRows<'a> {
                     rows[row + 2].add_scaled(ratio.sqrt() * direction[0], across);
                 }
             }
-            _ => rows[row..row + count].copy_from_slice(&unknowns[unknown..unknown + count]),
+            _ => rows[point.rows()].copy_from_slice(&unknowns[unknown..unknown + point.row_count()]),
         });
         RowVector::new(result, self.equality_count)
     }
 
-    /// (Q + friction·e⊗n)ᵀ r.
-    fn restrict<V: Entry>(&self, all: &RowVector<V>, friction: f64) -> Vec<V> {
-        self.reduce(all, |rows, direction, ratio| {
+    /// (Q + 𝓕 e⊗n)ᵀ r for Coulomb's law, else Qᵀ r.
+    fn restrict<V: Entry>(&self, all: &RowVector<V>, friction: Friction) -> Vec<V> {
+        self.reduce(all, |point, rows, direction, ratio| {
             let mut normal = rows[0];
             for (row, e) in rows[1..].iter().zip(direction) {
-                normal.add_scaled(friction * e, row);
+                normal.add_scaled(friction.of(point) * e, row);
             }
             [normal, across(rows, direction, ratio.sqrt())]
         })
@@ -132,21 +120,25 @@ impl<'a> ActiveRows<'a> {
     /// The unknowns y that repeat given multipliers: T y has their values on B_E, their normal forces on the closed
     /// nodes, their tangential forces on the stick nodes, and their part across the slip direction on the slip nodes.
     pub fn unknowns_of(&self, multipliers: &RowVector) -> Vec<f64> {
-        self.reduce(multipliers, |rows, direction, ratio| {
+        self.reduce(multipliers, |_, rows, direction, ratio| {
             [rows[0], if ratio > 0.0 { across(rows, direction, 1.0 / ratio.sqrt()) } else { 0.0 }]
         })
     }
 
-    /// Unknowns from all rows: those of B_E and of stick nodes as they are, those of slip nodes by `slip(rows, e, β)`.
-    fn reduce<V: Entry>(&self, all: &RowVector<V>, slip: impl Fn(&[V], [f64; 2], f64) -> [V; 2]) -> Vec<V> {
+    /// Unknowns from all rows: those of B_E and of stick nodes as they are, those of slip nodes by `slip(node, rows, e, β)`.
+    fn reduce<V: Entry>(
+        &self,
+        all: &RowVector<V>,
+        slip: impl Fn(&ContactPoint, &[V], [f64; 2], f64) -> [V; 2],
+    ) -> Vec<V> {
         let (equality, rows) = all.split();
         let mut unknowns = vec![V::ZERO; self.dimension];
         unknowns[..self.equality_count].copy_from_slice(equality);
-        self.closed_nodes(|row, count, unknown, linearization| {
-            let rows = &rows[row..row + count];
+        self.closed_nodes(|point, unknown, linearization| {
+            let (rows, count) = (&rows[point.rows()], point.row_count());
             match *linearization {
                 Linearization::Slip { direction, ratio } => {
-                    let values = slip(rows, direction, ratio);
+                    let values = slip(point, rows, direction, ratio);
                     unknowns[unknown..unknown + count - 1].copy_from_slice(&values[..count - 1]);
                 }
                 _ => unknowns[unknown..unknown + count].copy_from_slice(rows),
@@ -157,8 +149,8 @@ impl<'a> ActiveRows<'a> {
 
     /// Adds `factor`·D y for a diagonal D that is `value(β)` on the slip rows and 0 elsewhere.
     fn add_slip_diagonal<V: Entry>(&self, reduced: &[V], result: &mut [V], factor: f64, value: impl Fn(f64) -> f64) {
-        self.closed_nodes(|_, count, unknown, linearization| {
-            if let (Linearization::Slip { ratio, .. }, 3) = (linearization, count) {
+        self.closed_nodes(|point, unknown, linearization| {
+            if let (Linearization::Slip { ratio, .. }, 3) = (linearization, point.row_count()) {
                 result[unknown + 1].add_scaled(factor * value(*ratio), &reduced[unknown + 1]);
             }
         });
@@ -176,13 +168,13 @@ impl<'a> ActiveRows<'a> {
 
     /// Calls `visit(column of T, column of Q)` for every contact unknown; columns are combinations (row of B, weight).
     pub fn contact_columns(&self, mut visit: impl FnMut(&[(usize, f64)], &[(usize, f64)])) {
-        self.closed_nodes(|contact_row, count, _, linearization| {
-            let row = self.equality_count + contact_row;
+        self.closed_nodes(|point, _, linearization| {
+            let (row, count) = (self.equality_count + point.start, point.row_count());
             match *linearization {
                 Linearization::Slip { direction, ratio } => {
                     let mut trial = vec![(row, 1.0)];
                     let tangents =
-                        (1..count).map(|tangent| (row + tangent, self.trial_friction * direction[tangent - 1]));
+                        (1..count).map(|tangent| (row + tangent, self.friction.of(point) * direction[tangent - 1]));
                     trial.extend(tangents);
                     visit(&trial, &[(row, 1.0)]);
                     if count == 3 {

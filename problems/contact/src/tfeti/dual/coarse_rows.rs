@@ -24,11 +24,10 @@ impl<'a> TornModes<'a> {
 
     /// One row of Gᵀ.
     pub fn coarse_row(&self, row: usize) -> Vec<(usize, Six)> {
-        let (model, interface) = (self.model, &self.model.interface);
-        let size = model.pattern.pattern.dimension() * model.numbering.members();
+        let (numbering, interface) = (&self.model.numbering, &self.model.interface);
         let mut blocks: Vec<(usize, Six)> = Vec::with_capacity(2);
-        for (place, value) in self.model.constraints.rows.row(row) {
-            let cluster = interface.dof(place) / size;
+        for (place, value) in self.system.rows.rows.row(row) {
+            let cluster = numbering.cluster_of(numbering.owner(interface.dof(place)));
             // Dofs of one row that belong to one cluster are simply added up.
             let position = blocks.iter().position(|(other, _)| *other == cluster).unwrap_or_else(|| {
                 blocks.push((cluster, [0.0; MOTIONS]));

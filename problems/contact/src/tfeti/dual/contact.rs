@@ -5,13 +5,13 @@
 //! residual:  (c w_E,  λ − Π(λ + c w)),     G λ = e in every iterate
 //! ```
 
-use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::{ContactBoundary, ContactRows};
 use crate::equilibrium::certificate::projection_residual;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::error::ContactError;
 use crate::linear::sums::Sums;
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::dual::active_rows::{ActiveRows, Friction};
+use crate::tfeti::dual::active_rows::ActiveRows;
 use crate::tfeti::dual::active_set::ActiveSet;
 use crate::tfeti::dual::coarse_space::CoarseSpace;
 use crate::tfeti::dual::iterate::{Iterate, TornSolution};
@@ -30,8 +30,8 @@ pub struct TornContact<'a> {
     pub(crate) boundary: &'a ContactBoundary,
     /// The jumps d without forces.
     pub(crate) constant: RowVector,
-    /// Initial gaps of the contact nodes, mm.
-    pub(crate) gaps: &'a [f64],
+    /// The contact rows of the shape.
+    pub(crate) rows: &'a ContactRows,
     /// The typical stiffness c, N/mm.
     pub(crate) stiffness: f64,
     /// Force that residuals are relative to, N.
@@ -41,22 +41,22 @@ pub struct TornContact<'a> {
 }
 
 impl<'a> TornContact<'a> {
-    /// The problem of a factored shape with initial gaps (mm); `stiffness` is c (N/mm), `load` scales residuals (N).
+    /// The problem of a factored shape with its contact rows; `stiffness` is c (N/mm), `load` scales residuals (N).
     pub fn new(
         operator: DualOperator<'a>,
         space: &'a CoarseSpace,
         preconditioner: Preconditioner<'a>,
-        gaps: &'a [f64],
+        rows: &'a ContactRows,
         [stiffness, load]: [f64; 2],
         precision: Precision,
     ) -> Self {
         let (boundary, constraints) = (&operator.model.problem.boundary, &operator.model.constraints);
         let mut constant = operator.gather(operator.loaded_displacement());
         let nodes = boundary.points.iter().zip(&constraints.normalisation);
-        for ((point, nu), gap) in nodes.zip(gaps) {
+        for ((point, nu), gap) in nodes.zip(rows.gaps()) {
             constant.contact_mut()[point.start] -= gap / nu;
         }
-        Self { operator, space, preconditioner, boundary, constant, gaps, stiffness, load, precision }
+        Self { operator, space, preconditioner, boundary, constant, rows, stiffness, load, precision }
     }
 
     /// |v|₂ of a vector over rows of B_E, over all rows, or over unknowns of an active set.
@@ -119,12 +119,11 @@ impl<'a> TornContact<'a> {
     pub(crate) fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
         let arguments = self.arguments(iterate);
         let points = self.boundary.points.iter();
-        let range = points.map(|point| point.rows());
-        range.map(|rows| Linearization::at(&arguments[rows], self.boundary.friction)).collect()
+        points.map(|point| Linearization::at(&arguments[point.rows()], point.friction)).collect()
     }
 
     /// The rows of given derivatives.
-    pub(crate) fn rows(&self, linearizations: Vec<Linearization>, friction: Friction) -> ActiveRows<'_> {
+    pub(crate) fn active_rows(&self, linearizations: Vec<Linearization>, friction: Friction) -> ActiveRows<'_> {
         let equality_count = self.operator.model.constraints.equality_count;
         ActiveRows::new(self.boundary, equality_count, linearizations, self.stiffness, friction)
     }
@@ -138,7 +137,7 @@ impl<'a> TornContact<'a> {
         linearizations: Vec<Linearization>,
         friction: Friction,
     ) -> Result<ActiveSet<'_>, ContactError> {
-        ActiveSet::new(self.space, self.rows(linearizations, friction))
+        ActiveSet::new(self.space, self.active_rows(linearizations, friction))
     }
 
     /// d − F λ for an image F λ.

@@ -18,7 +18,7 @@ mod operator;
 mod preconditioner;
 mod rigid_rows;
 
-pub use active_rows::{ActiveRows, Friction};
+pub use active_rows::ActiveRows;
 pub use active_set::ActiveSet;
 pub use coarse_space::CoarseSpace;
 pub use contact::TornContact;

@@ -5,7 +5,7 @@ use crate::linear::entry::{Entry, Row};
 use crate::linear::real::Real;
 use crate::linear::right_side::RightSide;
 use crate::linear::vector::add_scaled;
-use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
+use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector, parts_mut};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -103,7 +103,7 @@ impl<'a> DualOperator<'a> {
     ) -> RowVector<Row<E, N>> {
         self.applications.fetch_add(count, Ordering::Relaxed);
         let load = |first: usize, part: &mut [Row<E, N>]| {
-            self.model.constraints.transposed.multiply_rows(first, multipliers, part);
+            self.system.rows.transposed.multiply_rows(first, multipliers, part);
             for (load, force) in part.iter_mut().zip(&forces[first..]) {
                 *load = force.zip(load, |force, held| force - held);
             }
@@ -120,7 +120,7 @@ impl<'a> DualOperator<'a> {
         solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
     ) {
         let load = |first: usize, part: &mut [V]| {
-            self.model.constraints.transposed.multiply_rows(first, multipliers, part);
+            self.system.rows.transposed.multiply_rows(first, multipliers, part);
         };
         self.solve_loads(torn, load, solve);
     }
@@ -133,20 +133,19 @@ impl<'a> DualOperator<'a> {
         load: impl Fn(usize, &mut [V]) + Sync,
         solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
     ) {
-        let size = self.model.pattern.pattern.dimension();
-        let joined = self.system.is_joined();
-        let mut resultants = vec![[V::ZERO; MOTIONS]; if joined { self.system.parts.len() } else { 0 }];
-        let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
-        if joined {
+        let (system, starts) = (self.system, &self.system.starts);
+        let mut resultants = vec![[V::ZERO; MOTIONS]; if system.is_joined() { system.parts.len() } else { 0 }];
+        let parts = parts_mut(torn, starts).into_par_iter().zip(&system.parts).enumerate();
+        if system.is_joined() {
             parts.zip(&mut resultants).for_each(|((index, (values, factors)), resultants)| {
-                load(index * size, values);
+                load(starts[index], values);
                 *resultants = factors.resultants_of(values);
                 solve(factors, values);
             });
-            self.system.join(&self.model.constraints.joined, &resultants, torn);
+            system.join(&self.model.constraints.joined, &resultants, torn);
         } else {
             parts.for_each(|(index, (values, factors))| {
-                load(index * size, values);
+                load(starts[index], values);
                 solve(factors, values);
             });
         }
@@ -158,7 +157,7 @@ impl<'a> DualOperator<'a> {
     }
 
     fn gather_columns<V: Entry>(&self, torn: &mut [V]) -> RowVector<V> {
-        self.model.rows_times(&self.model.constraints.rows, torn)
+        self.model.rows_times(&self.system.rows.rows, torn)
     }
 
     /// K⁺ l over the subdomains of this process for torn forces l, and Rᵀ l of all clusters; counted like a product
@@ -168,9 +167,8 @@ impl<'a> DualOperator<'a> {
         let mut torn = self.model.zeros();
         let load = |first: usize, part: &mut [f64]| part.copy_from_slice(&forces.0[first..first + part.len()]);
         self.solve_loads(&mut torn.0, load, |factors, part| factors.solve(part));
-        let size = self.model.pattern.pattern.dimension();
-        let parts = self.system.parts.iter().zip(forces.0.chunks_exact(size));
-        let own = parts.flat_map(|(part, forces)| part.resultants_of(forces)).collect();
+        let parts = self.system.parts.iter().enumerate();
+        let own = parts.flat_map(|(index, part)| part.resultants_of(&forces.0[self.system.dofs(index)])).collect();
         let resultants = self.model.clusters.gather(&self.system.cluster_resultants(own), MOTIONS);
         (torn, resultants)
     }
@@ -178,8 +176,8 @@ impl<'a> DualOperator<'a> {
     /// The displacements K⁺ f under the loads.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
-        let size = self.model.pattern.pattern.dimension();
-        torn.0.par_chunks_mut(size).zip(&self.system.parts).for_each(|(part, factors)| {
+        let parts = parts_mut(&mut torn.0, &self.system.starts).into_par_iter();
+        parts.zip(&self.system.parts).for_each(|(part, factors)| {
             if !factors.loaded_displacement.is_empty() {
                 part.copy_from_slice(&factors.loaded_displacement);
             }
@@ -195,9 +193,8 @@ impl<'a> DualOperator<'a> {
         let mut torn = self.model.zeros();
         self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.solve(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
-        let size = self.model.pattern.pattern.dimension();
         let own = &amplitudes[MOTIONS * self.model.clusters.owned().start..];
-        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).enumerate();
+        let parts = parts_mut(&mut loaded.0, &self.system.starts).into_par_iter().zip(&self.system.parts).enumerate();
         parts.for_each(|(index, (values, part))| {
             for (mode, amplitude) in part.modes.iter().zip(self.system.amplitudes_of(index, own)) {
                 add_scaled(values, amplitude, mode);

@@ -8,7 +8,7 @@
 
 use crate::linear::entry::vectorized;
 use crate::linear::right_side::RightSide;
-use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem};
+use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem, parts_mut};
 use rayon::prelude::*;
 
 /// A preconditioner of one factored system.
@@ -38,16 +38,15 @@ impl<'a> Preconditioner<'a> {
             result.iter_mut().for_each(|entry| entry.scale(self.stiffness));
             return result;
         }
-        let (model, constraints) = (self.model, &self.model.constraints);
-        let size = model.pattern.pattern.dimension();
-        let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
+        let (rows, starts) = (&self.system.rows, &self.system.starts);
+        let parts = parts_mut(torn, starts).into_par_iter().zip(&self.system.parts).enumerate();
         parts.for_each(|(index, (values, factors))| {
-            constraints.weighted_transposed.multiply_rows(index * size, residual, values);
+            rows.weighted_transposed.multiply_rows(starts[index], residual, values);
             if values.iter().any(|entry| *entry != V::ZERO) {
                 self.apply_subdomain(index, factors, values);
             }
         });
-        model.rows_times(&constraints.weighted, torn)
+        self.model.rows_times(&rows.weighted, torn)
     }
 
     /// S or K_BB times the boundary part. Entries of the interior are meaningless and not read: B_D has no rows there.
@@ -55,7 +54,7 @@ impl<'a> Preconditioner<'a> {
         let stiffness = factors.boundary_stiffness();
         let Some(class) = self.model.interior(index) else {
             let whole = part.to_vec();
-            self.model.pattern.pattern.multiply(stiffness, &whole, part);
+            self.model.piece(index).1.pattern.lower.multiply(stiffness, &whole, part);
             return;
         };
         let boundary: Vec<V> = class.boundary.iter().map(|&dof| part[dof]).collect();

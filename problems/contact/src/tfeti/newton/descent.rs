@@ -10,10 +10,10 @@
 //! direction).
 
 use crate::equilibrium::Stage;
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
-use crate::tfeti::dual::{ActiveSet, Friction, Iterate, Precision, TornContact};
+use crate::tfeti::dual::{ActiveSet, Iterate, Precision, TornContact};
 use crate::tfeti::newton::linear_solve::balancing_amplitudes;
 use crate::tfeti::newton::recycling::{Direction, Recycled};
 use crate::tfeti::newton::settings::NewtonSettings;
@@ -83,7 +83,7 @@ impl TornContact<'_> {
     fn patience(&self) -> usize {
         let problem = &self.operator.model.problem;
         let slow = problem.flat_or_tall().is_some()
-            || problem.bodies().any(|body| body.material.compressible_neighbour().is_some());
+            || problem.materials().any(|material| material.compressible_neighbour().is_some());
         if slow { MAX_STALLED_SLOW } else { MAX_STALLED_PRODUCTS }
     }
 
@@ -104,7 +104,7 @@ impl TornContact<'_> {
     /// One more direction, and the rigid motion that balances the iterate.
     fn extend(&self, iterate: &Iterate, active: &ActiveSet<'_>, directions: &mut Recycled) {
         let rows = &active.rows;
-        let current = self.rows(self.linearize(iterate), Friction::Coulomb);
+        let current = self.active_rows(self.linearize(iterate), Friction::Coulomb);
         let mut direction = current.trial(&current.unknowns_of(&iterate.multipliers));
         add_scaled(&mut direction, -1.0, &iterate.multipliers);
         let mut residual = rows.test_transposed(&iterate.jumps);

@@ -7,9 +7,9 @@
 //! Only directions of search are affected: the residual, and with it the certificate, knows nothing of the closed
 //! nodes.
 
-use crate::equilibrium::law::Linearization;
+use crate::equilibrium::law::{Friction, Linearization};
 use crate::error::ContactError;
-use crate::tfeti::dual::{ActiveSet, Friction, Iterate, TornContact};
+use crate::tfeti::dual::{ActiveSet, Iterate, TornContact};
 
 /// Nodes closed first when an active set leaves a motion free.
 const FIRST_CLOSED: usize = 3;

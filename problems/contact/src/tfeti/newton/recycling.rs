@@ -141,7 +141,7 @@ impl Recycled {
                 let rows = point.rows();
                 let x: Vec<f64> =
                     rows.map(|row| position.forces[row] + contact.stiffness * position.jumps[row]).collect();
-                Linearization::at(&x, boundary.friction).derivative(x.len(), boundary.friction)
+                Linearization::at(&x, point.friction).derivative(x.len(), point.friction)
             })
             .collect();
         let change = |(direction, jumps): (&Direction, &RowVector)| {

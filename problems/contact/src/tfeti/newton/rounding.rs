@@ -15,7 +15,7 @@ const FLOOR_REACHED: f64 = 10.0;
 impl TornContact<'_> {
     /// The error of a run that ended at a residual above what is acceptable.
     pub(crate) fn not_converged(&self, residual: f64, settings: &NewtonSettings, history: Vec<f64>) -> ContactError {
-        let largest = self.gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
+        let largest = self.rows.gaps().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
         let gaps = f64::EPSILON * self.stiffness * largest / self.load;
         let stiffness = self.operator.system.forward_error;
         let (floor, what) = if gaps > stiffness {

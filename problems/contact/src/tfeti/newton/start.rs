@@ -5,9 +5,9 @@
 //! balanced:  given forces, changed as little as the resultants e ask for;   amplitudes by least squares on the held rows
 //! ```
 
-use crate::equilibrium::law::{Linearization, tangential_norm};
+use crate::equilibrium::law::{Friction, Linearization, tangential_norm};
 use crate::error::ContactError;
-use crate::tfeti::dual::{Friction, Iterate, TornContact};
+use crate::tfeti::dual::{Iterate, TornContact};
 use crate::tfeti::newton::linear_solve::LinearAccuracy;
 use crate::tfeti::newton::recycling::Recycled;
 use crate::tfeti::torn::RowVector;
@@ -45,14 +45,14 @@ impl TornContact<'_> {
         recycled: Option<&mut Recycled>,
     ) -> Result<Iterate, ContactError> {
         let reach = REACH * self.load / self.stiffness;
-        let nearest = self.gaps.iter().copied().fold(f64::INFINITY, f64::min);
+        let nearest = self.rows.gaps().fold(f64::INFINITY, f64::min);
         let within = |reach: f64| -> Vec<Linearization> {
-            let close = |gap: &f64| if *gap <= reach { Linearization::Stick } else { Linearization::Open };
-            self.gaps.iter().map(close).collect()
+            let close = |gap: f64| if gap <= reach { Linearization::Stick } else { Linearization::Open };
+            self.rows.gaps().map(close).collect()
         };
         let active = match self.active_set(within(reach), Friction::Coulomb) {
             Err(ContactError::Unheld { .. }) => {
-                self.held(within(nearest.max(0.0) + reach), || self.gaps.iter().map(|gap| -gap).collect())?
+                self.held(within(nearest.max(0.0) + reach), || self.rows.gaps().map(|gap| -gap).collect())?
             }
             active => active?,
         };
@@ -61,7 +61,7 @@ impl TornContact<'_> {
 
     /// Ψ = 𝓕 max(0, λ_N) per contact node, of packed contact rows.
     pub(crate) fn slip_bounds(&self, forces: &[f64]) -> Vec<f64> {
-        self.boundary.points.iter().map(|point| self.boundary.friction * forces[point.start].max(0.0)).collect()
+        self.boundary.points.iter().map(|point| point.friction * forces[point.start].max(0.0)).collect()
     }
 
     /// Given multipliers, balanced, with their image, and amplitudes by least squares on the held rows; `bounds`: slip

@@ -183,8 +183,8 @@ impl TornContact<'_> {
         for (point, &radius) in self.boundary.points.iter().zip(bounds) {
             let index = equality + point.start;
             blocks.push(Block::HalfLine { index, bound: 0.0 });
-            if !point.tangents.is_empty() {
-                blocks.push(Block::Disc { first: index + 1, size: point.tangents.len(), centre: [0.0; 2], radius });
+            if point.tangents > 0 {
+                blocks.push(Block::Disc { first: index + 1, size: point.tangents, centre: [0.0; 2], radius });
             }
         }
         Ok(SeparableSet::new(equality + self.boundary.row_count, blocks)?)

@@ -142,10 +142,9 @@ impl ClusterFactors {
     }
 
     /// μ and −α for forces f of which K⁺ f and Rᵀ f are given, subdomain by subdomain.
-    pub fn reactions<V: RightSide>(&self, rows: &ClusterRows, free: &[V], resultants: &[[V; MOTIONS]]) -> Vec<V> {
-        let size = free.len() / self.members.len();
+    pub fn reactions<V: RightSide>(&self, rows: &ClusterRows, free: &[&[V]], resultants: &[[V; MOTIONS]]) -> Vec<V> {
         let mut right = vec![V::Double::ZERO; self.inverse.nrows()];
-        for (member, free) in rows.members.iter().zip(free.chunks_exact(size)) {
+        for (member, free) in rows.members.iter().zip(free) {
             for &(row, place, value) in &member.entries {
                 right[row].add_scaled(value, &free[member.dofs[place]].double());
             }

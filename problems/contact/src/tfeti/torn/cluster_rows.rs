@@ -1,11 +1,10 @@
 //! The rows that hold a cluster together, B_c: some gluing rows between its subdomains, which need no multipliers.
 //!
 //! ```text
-//! B_c u = 0:   all Helmert rows of the chosen nodes whose copies all lie in the cluster;   such rows are none of B_E
+//! B_c u = 0:   all Helmert rows of the joints, nodes whose copies all lie in the cluster;   such rows are none of B_E
 //! ```
 
 use crate::tfeti::torn::scene_rows::SparseRow;
-use std::ops::Range;
 
 /// B_c of one cluster.
 #[derive(Debug)]
@@ -25,12 +24,13 @@ pub struct MemberRows {
 }
 
 impl ClusterRows {
-    /// The parts of `rows` on the subdomains of a cluster of torn dofs `dofs`, `size` per subdomain.
-    pub fn new(rows: &[SparseRow], dofs: Range<usize>, size: usize) -> Self {
-        let member = |first: usize| {
+    /// The parts of `rows` on the subdomains of a cluster; `starts`: the first torn dof of each, then the end.
+    pub fn new(rows: &[SparseRow], starts: &[usize]) -> Self {
+        let member = |pair: &[usize]| {
+            let (first, end) = (pair[0], pair[1]);
             let own =
                 || rows.iter().enumerate().flat_map(|(index, row)| row.iter().map(move |&(dof, v)| (index, dof, v)));
-            let own = || own().filter(move |(_, dof, _)| (first..first + size).contains(dof));
+            let own = || own().filter(move |(_, dof, _)| (first..end).contains(dof));
             let mut dofs: Vec<usize> = own().map(|(_, dof, _)| dof - first).collect();
             dofs.sort_unstable();
             dofs.dedup();
@@ -38,6 +38,6 @@ impl ClusterRows {
             let entries = own().map(|(row, dof, value)| (row, place(dof), value)).collect();
             MemberRows { entries, dofs }
         };
-        Self { count: rows.len(), members: dofs.step_by(size).map(member).collect() }
+        Self { count: rows.len(), members: starts.windows(2).map(member).collect() }
     }
 }

@@ -32,8 +32,8 @@ pub struct CoarsePattern {
 }
 
 impl CoarsePattern {
-    /// The pattern of the rows of B of all processes. The bodies have `counts` clusters per axis each, of `size` dofs;
-    /// `distribution` is that of the clusters.
+    /// The pattern of the rows of B of all processes. `centres`: of the clusters; `distribution` is that of the
+    /// clusters.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the symbolic analysis fails.
@@ -42,8 +42,7 @@ impl CoarsePattern {
         interface: &Interface,
         numbering: &Numbering,
         distribution: &Distribution,
-        counts: [usize; 3],
-        size: usize,
+        centres: &[[f64; 3]],
     ) -> Result<Self, ContactError> {
         let owned = distribution.owned();
         // A process has all rows that touch its subdomains, so that it knows all their neighbours.
@@ -51,7 +50,8 @@ impl CoarsePattern {
         let mut touched = Vec::new();
         for row in 0..constraints.equality_count {
             touched.clear();
-            touched.extend(constraints.rows.row(row).map(|(place, _)| interface.dof(place) / size));
+            let places = constraints.equality().row(row).map(|(place, _)| place);
+            touched.extend(places.map(|place| numbering.cluster_of(numbering.owner(interface.dof(place)))));
             touched.sort_unstable();
             touched.dedup();
             for (index, own) in touched.iter().enumerate().filter(|(_, own)| owned.contains(own)) {
@@ -59,20 +59,26 @@ impl CoarsePattern {
             }
         }
         let contact: BTreeSet<usize> =
-            constraints.contact_subdomains.iter().map(|subdomain| subdomain / numbering.members()).collect();
+            constraints.contact_subdomains.iter().map(|&subdomain| numbering.cluster_of(subdomain)).collect();
         for own in contact.iter().filter(|own| owned.contains(own)) {
             neighbours[own - owned.start].extend(contact.range(own + 1..));
         }
         let pieces = neighbours.iter().map(|numbers| numbers.iter().map(|&number: &usize| number as f64).collect());
-        let neighbours = distribution.complete(pieces.collect());
-        let (clusters, dissected) = (distribution.count(), nested_dissection(counts));
-        let interior = (0..numbering.body_count())
-            .flat_map(|body| dissected.iter().map(move |&place| numbering.cluster(body, place)))
-            .filter(|cluster| !contact.contains(cluster));
+        let neighbours: Vec<Vec<u32>> = distribution
+            .complete(pieces.collect())
+            .into_iter()
+            .map(|numbers| numbers.into_iter().map(|number| number as u32).collect())
+            .collect();
+        let mut graph = neighbours.clone();
+        for (own, later) in neighbours.iter().enumerate() {
+            later.iter().for_each(|&other| graph[other as usize].push(own as u32));
+        }
+        let last: Vec<usize> = contact.iter().copied().collect();
+        let dissected = nested_dissection(centres, &graph, &last);
         let amplitudes = |cluster: usize| MOTIONS * cluster..MOTIONS * (cluster + 1);
-        let order: Vec<usize> = interior.chain(contact.iter().copied()).flat_map(amplitudes).collect();
-        let columns = (0..clusters).flat_map(|own| {
-            let coupled: Vec<usize> = neighbours[own].iter().flat_map(|&number| amplitudes(number as usize)).collect();
+        let order: Vec<usize> = dissected.into_iter().flat_map(amplitudes).collect();
+        let columns = neighbours.iter().enumerate().flat_map(|(own, later)| {
+            let coupled: Vec<usize> = later.iter().flat_map(|&number| amplitudes(number as usize)).collect();
             amplitudes(own).map(move |column| (column..MOTIONS * (own + 1)).chain(coupled.iter().copied()).collect())
         });
         let lower = Arc::new(LowerPattern::from_columns(columns.collect()));

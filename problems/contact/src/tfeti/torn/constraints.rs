@@ -1,8 +1,9 @@
-//! The rows of B: gluing and supports (B_E), then contact. They are orthonormal; geometry does not enter.
+//! The rows of B: gluing and supports (B_E), then contact. The rows of B_E are orthonormal, and geometry does not enter
+//! them; the contact rows of a shape follow its normals.
 //!
 //! ```text
-//! gluing of m copies:  (m − 1) Helmert rows;   supports: one row per copy (no gluing of that dof)
-//! contact:             (mean over copies of the lower body − mean over copies of the upper body)/ν,  ν = |normal row|
+//! gluing of m copies:  (m − 1) Helmert rows per free direction;   supports: one row per copy and held direction
+//! contact:             Σ_sides weight · (mean over the copies along d)/ν,  ν = √(Σ weight²/m)
 //! λ_physical = λ/ν,  jump_physical = ν·jump:   all rows of a node share ν, so the friction cone keeps its form
 //! ```
 //! B_D Bᵀ = I with stiffness weights between bodies: B_D gives the softer body the larger share.
@@ -11,30 +12,34 @@
 //! subdomain that it touches. Rows of owners in other processes come first. Contact rows are known to all processes;
 //! each computes the jumps of those that it owns, and all are told.
 
-use crate::equilibrium::ContactBoundary;
+use crate::body::Body;
+use crate::equilibrium::{ContactBoundary, ContactRows};
 use crate::error::ContactError;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
-use crate::scene::Scene;
 use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::distribution::Distribution;
 use crate::tfeti::torn::interface::{Interface, InterfaceBuilder};
-use crate::tfeti::torn::scene_rows::{BodyRows, EqualityRow, SceneRows, SparseRow, first_subdomain};
+use crate::tfeti::torn::joints::Joints;
+use crate::tfeti::torn::numbering::Numbering;
+use crate::tfeti::torn::scene_rows::{
+    ContactNode, Copies, EqualityRow, SceneRows, SparseRow, contact_cells, contact_rows, possible_directions,
+};
 use crate::tfeti::torn::vectors::RowVector;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// B, B_D and their transposes on the torn vectors of a process; the same for all shapes.
+/// What of B is the same for all shapes, on the torn vectors of a process.
 #[derive(Debug)]
 pub struct Constraints {
-    /// B: rows × torn vector; contact rows of other owners are empty.
-    pub rows: Csr,
-    /// Bᵀ: dofs of this process × rows.
-    pub transposed: Csr,
-    /// B_D: rows × torn vector, empty where B is; B_D Bᵀ = I.
-    pub weighted: Csr,
-    /// B_Dᵀ: dofs of this process × rows.
-    pub weighted_transposed: Csr,
+    /// B_E: rows × torn vector.
+    equality: Csr,
+    /// The contact nodes, from which the contact rows of a shape are made.
+    contact: Vec<ContactNode>,
+    /// The subdomain that owns every packed contact row.
+    contact_owners: Vec<usize>,
+    /// Whether rows of B or B_c may touch a dof of this process, at any shape.
+    pub touched: Vec<bool>,
     /// Number of rows of B_E of this process; contact rows follow in packed order.
     pub equality_count: usize,
     /// Number of rows of B_E of all processes.
@@ -57,42 +62,62 @@ pub struct Constraints {
     contact_counts: Vec<usize>,
 }
 
+/// B, B_D and their transposes for one shape, on the torn vectors of a process.
+#[derive(Debug)]
+pub struct TornRows {
+    /// B: rows × torn vector; contact rows of other owners are empty.
+    pub rows: Csr,
+    /// Bᵀ: dofs of this process × rows.
+    pub transposed: Csr,
+    /// B_D: rows × torn vector, empty where B is; B_D Bᵀ = I.
+    pub weighted: Csr,
+    /// B_Dᵀ: dofs of this process × rows.
+    pub weighted_transposed: Csr,
+}
+
 impl Constraints {
-    /// All rows of a scene whose subdomains have `size` dofs, and what processes exchange for them.
+    /// All rows of bodies, and what processes exchange for them. `start`: the contact rows at the start, `are_fixed`:
+    /// whether they have the same directions at all shapes.
     pub fn new(
-        scene: &Scene,
-        bodies: &[BodyRows<'_>],
+        bodies: &[Body],
         boundary: &ContactBoundary,
-        size: usize,
+        numbering: &Numbering,
         distribution: &Distribution,
+        (start, are_fixed): (&ContactRows, bool),
     ) -> (Self, Interface) {
         let subdomains = distribution.owned();
-        let all = SceneRows::new(scene, bodies, boundary, &subdomains, [distribution.count(), size]);
-        let owners: Vec<usize> = all.contact.iter().map(|[row, _]| first_subdomain(row, size)).collect();
-        let interface = interface(&all, &owners, distribution, size);
-        let owned = |owner: usize| subdomains.contains(&owner);
-        let (equality_count, own) = (all.equality.len(), interface.owned_count());
+        let copies: Vec<Copies> =
+            bodies.iter().enumerate().map(|(number, body)| Copies::new(number, body, numbering)).collect();
+        let joints = Joints::new(bodies, &copies, numbering);
+        let all = SceneRows::new(bodies, &copies, numbering, &subdomains, &joints);
+        let cells = contact_cells(boundary, bodies);
+        let contact: Vec<ContactNode> =
+            boundary.points.iter().map(|point| ContactNode::new(point, bodies, &copies, &cells)).collect();
+        let dofs: Vec<Vec<usize>> = contact
+            .iter()
+            .zip(boundary.points.iter().zip(&start.nodes))
+            .map(|(node, (point, rows))| node.dofs(&possible_directions(point, &rows.directions, are_fixed)))
+            .collect();
+        let owner = |dofs: &Vec<usize>| dofs.iter().min().map_or(0, |dof| numbering.owner(*dof));
+        let node_owners: Vec<usize> = dofs.iter().map(owner).collect();
+        let interface = interface(&all, (&dofs, &node_owners), distribution, numbering);
+        let own = interface.owned_count();
         let place = |(dof, value): &(usize, f64)| interface.place(*dof).map(|place| (place, *value));
         let whole = |row: &SparseRow| row.iter().filter_map(place).collect::<SparseRow>();
-        let within =
-            |row: &SparseRow| row.iter().filter_map(place).filter(|(place, _)| *place < own).collect::<SparseRow>();
-        let matrices = |kind: usize| {
-            let equality = || all.equality.iter().map(|row| &row.entries);
-            let contact = all.contact.iter().zip(&owners);
-            let contact = contact.map(|(rows, &owner)| if owned(owner) { whole(&rows[kind]) } else { vec![] });
-            let rows = Csr::from_rows(interface.torn_count(), equality().map(whole).chain(contact));
-            let contact = all.contact.iter().map(|rows| &rows[kind]);
-            (rows, Csr::from_rows(own, equality().chain(contact).map(within)).transpose())
-        };
-        let ((rows, transposed), (weighted, weighted_transposed)) = (matrices(0), matrices(1));
-        let (ranks, owners) = (0..distribution.communication().size(), &owners);
+        let equality = Csr::from_rows(interface.torn_count(), all.equality.iter().map(|row| whole(&row.entries)));
+        let joined = cluster_rows(&all, numbering, &subdomains);
+        let first = numbering.starts()[subdomains.start];
+        let mut touched = vec![false; own];
+        let mut touch = |dof: usize| touched.get_mut(dof.wrapping_sub(first)).into_iter().for_each(|t| *t = true);
+        all.equality.iter().flat_map(|row| &row.entries).for_each(|(dof, _)| touch(*dof));
+        dofs.iter().flatten().for_each(|&dof| touch(dof));
+        let owners = boundary.points.iter().zip(&node_owners);
+        let contact_owners: Vec<usize> =
+            owners.flat_map(|(point, owner)| std::iter::repeat_n(*owner, point.row_count())).collect();
+        let (ranks, owners) = (0..distribution.communication().size(), &contact_owners);
         let of_rank = |rank: usize| (0..owners.len()).filter(move |&row| distribution.owner(owners[row]) == rank);
         let constraints = Self {
-            transposed,
-            weighted_transposed,
-            rows,
-            weighted,
-            equality_count,
+            equality_count: all.equality.len(),
             total_equality_count: all.counts.iter().sum(),
             places: places(&all),
             own_counts: ranks.clone().map(|rank| all.counts[distribution.of(rank)].iter().sum()).collect(),
@@ -100,18 +125,48 @@ impl Constraints {
             owned_rows: (subdomains.start..=subdomains.end)
                 .map(|subdomain| all.equality.partition_point(|row| row.owner < subdomain))
                 .collect(),
-            contact_subdomains: all.contact.iter().flat_map(|[row, _]| row.iter().map(|(dof, _)| dof / size)).collect(),
+            contact_subdomains: dofs.iter().flatten().map(|&dof| numbering.owner(dof)).collect(),
             contact_order: ranks.clone().flat_map(of_rank).collect(),
             contact_counts: ranks.map(|rank| of_rank(rank).count()).collect(),
-            joined: cluster_rows(&all, &bodies[0], &subdomains, size),
-            normalisation: all.normalisation,
+            normalisation: contact.iter().map(|node| node.normalisation).collect(),
+            joined,
+            equality,
+            contact,
+            contact_owners,
+            touched,
         };
         (constraints, interface)
     }
 
+    /// B and B_D with the contact rows of a shape.
+    pub fn rows_of(&self, rows: &ContactRows, interface: &Interface, distribution: &Distribution) -> TornRows {
+        let (owned, own) = (distribution.owned(), interface.owned_count());
+        let contact = contact_rows(&self.contact, rows);
+        let place = |(dof, value): &(usize, f64)| interface.place(*dof).map(|place| (place, *value));
+        let matrices = |kind: usize| {
+            let within = |row: &[SparseRow; 2]| -> SparseRow { row[kind].iter().filter_map(place).collect() };
+            let mut rows = self.equality.clone();
+            let own_rows = contact.iter().zip(&self.contact_owners);
+            rows.extend(own_rows.map(|(row, owner)| if owned.contains(owner) { within(row) } else { vec![] }));
+            let equality = (0..self.equality_count).map(|row| self.equality.row(row).collect::<SparseRow>());
+            let all = equality.chain(contact.iter().map(within)).map(|mut row| {
+                row.retain(|(place, _)| *place < own);
+                row
+            });
+            (rows, Csr::from_rows(own, all).transpose())
+        };
+        let ((rows, transposed), (weighted, weighted_transposed)) = (matrices(0), matrices(1));
+        TornRows { rows, transposed, weighted, weighted_transposed }
+    }
+
+    /// B_E: rows × torn vector.
+    pub fn equality(&self) -> &Csr {
+        &self.equality
+    }
+
     /// Number of rows of this process.
     pub fn row_count(&self) -> usize {
-        self.rows.row_count()
+        self.equality_count + self.contact_owners.len()
     }
 
     /// The zero vector over the rows of this process.
@@ -153,6 +208,50 @@ impl Constraints {
         pieces
     }
 
+    /// Σ_sides weight · (mean over the copies) of torn displacements with their ghosts at every contact node, along the
+    /// axes.
+    pub(crate) fn contact_values(
+        &self,
+        boundary: &ContactBoundary,
+        torn: &[f64],
+        interface: &Interface,
+        distribution: &Distribution,
+    ) -> Vec<[f64; 3]> {
+        let own = self.own_contact_rows(distribution);
+        let mut is_own = vec![false; self.contact_owners.len()];
+        own.iter().for_each(|&row| is_own[row] = true);
+        let value = |node: &ContactNode| -> [f64; 3] {
+            std::array::from_fn(|axis| {
+                let dofs = node.shares(axis);
+                dofs.filter_map(|(dof, share)| interface.place(dof).map(|place| share * torn[place])).sum()
+            })
+        };
+        // The normal row of a node carries its three numbers.
+        let mut pieces = vec![Vec::new(); self.contact_owners.len()];
+        for (point, node) in boundary.points.iter().zip(&self.contact) {
+            if is_own[point.start] {
+                pieces[point.start] = value(node).to_vec();
+            }
+        }
+        let own: Vec<Vec<f64>> = own.iter().map(|&row| std::mem::take(&mut pieces[row])).collect();
+        let all = self.complete_contact(&own, distribution);
+        let three = |values: &Vec<f64>| std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0.0));
+        boundary.points.iter().map(|point| three(&all[point.start])).collect()
+    }
+
+    /// Calls `add(dof, force)` with the shares of the dofs of this process in vectors at the contact nodes.
+    pub(crate) fn spread(&self, vectors: &[[f64; 3]], interface: &Interface, mut add: impl FnMut(usize, f64)) {
+        for (node, vector) in self.contact.iter().zip(vectors) {
+            for (axis, component) in vector.iter().enumerate() {
+                for (dof, share) in node.shares(axis) {
+                    if let Some(place) = interface.place(dof).filter(|place| *place < interface.owned_count()) {
+                        add(place, share * component);
+                    }
+                }
+            }
+        }
+    }
+
     /// A vector over all rows, from those of this process.
     pub(crate) fn whole(&self, own: &RowVector, distribution: &Distribution) -> Vec<f64> {
         let (equality, contact) = own.split();
@@ -173,8 +272,7 @@ impl Constraints {
     /// # Errors
     /// [`ContactError::ForeignState`] when their number is not that of the rows.
     pub fn row_vector(&self, values: &[f64]) -> Result<RowVector, ContactError> {
-        let contact = self.row_count() - self.equality_count;
-        let (expected, found) = (self.total_equality_count + contact, values.len());
+        let (expected, found) = (self.total_equality_count + self.contact_owners.len(), values.len());
         if expected != found {
             return Err(ContactError::ForeignState { what: "multipliers", expected, found });
         }
@@ -197,33 +295,43 @@ fn places(all: &SceneRows) -> Vec<usize> {
     all.equality.iter().map(|EqualityRow { owner, index, .. }| before[*owner] + index).collect()
 }
 
-/// B_c of the clusters of this process, whose subdomains have `size` dofs each.
-fn cluster_rows(all: &SceneRows, body: &BodyRows<'_>, subdomains: &Range<usize>, size: usize) -> Vec<ClusterRows> {
-    let dofs = |index: usize| size * subdomains.start + index * body.cluster_size;
+/// B_c of the clusters of this process.
+fn cluster_rows(all: &SceneRows, numbering: &Numbering, subdomains: &Range<usize>) -> Vec<ClusterRows> {
+    let first = if subdomains.is_empty() { 0 } else { numbering.cluster_of(subdomains.start) };
     let rows = all.joined.iter().enumerate();
-    rows.map(|(index, rows)| ClusterRows::new(rows, dofs(index)..dofs(index + 1), size)).collect()
+    let starts = |index: usize| {
+        let members = numbering.members(first + index);
+        &numbering.starts()[members.start..=members.end]
+    };
+    rows.map(|(index, rows)| ClusterRows::new(rows, starts(index))).collect()
 }
 
-/// What this process exchanges: all processes that a row of B_E touches need its dofs; of a contact row, the owner.
-fn interface(all: &SceneRows, owners: &[usize], distribution: &Distribution, size: usize) -> Interface {
+/// What this process exchanges: all processes that a row of B_E touches need its dofs; those of a contact node, the owner.
+fn interface(
+    all: &SceneRows,
+    (nodes, owners): (&[Vec<usize>], &[usize]),
+    distribution: &Distribution,
+    numbering: &Numbering,
+) -> Interface {
     let (rank, subdomains) = (distribution.communication().rank(), distribution.owned());
-    let owned: Range<usize> = size * subdomains.start..size * subdomains.end;
+    let owned: Range<usize> = numbering.starts()[subdomains.start]..numbering.starts()[subdomains.end];
+    let of_dof = |dof: usize| distribution.owner(numbering.owner(dof));
     let mut builder = InterfaceBuilder::default();
     if !distribution.is_alone() {
-        let dofs = |row: &'_ SparseRow| row.iter().map(|(dof, _)| *dof).collect::<Vec<usize>>();
-        for dofs in all.equality.iter().map(|row| dofs(&row.entries)) {
-            builder.needs(&owned, dofs.iter().copied());
-            let touched: BTreeSet<usize> = dofs.iter().map(|dof| distribution.owner(dof / size)).collect();
+        for row in &all.equality {
+            let dofs = || row.entries.iter().map(|(dof, _)| *dof);
+            builder.needs(&owned, dofs());
+            let touched: BTreeSet<usize> = dofs().map(of_dof).collect();
             for other in touched.into_iter().filter(|other| *other != rank) {
-                builder.needed_by(other, &owned, dofs.iter().copied());
+                builder.needed_by(other, &owned, dofs());
             }
         }
-        for ([row, _], &owner) in all.contact.iter().zip(owners) {
+        for (dofs, &owner) in nodes.iter().zip(owners) {
             match distribution.owner(owner) {
-                owner if owner == rank => builder.needs(&owned, dofs(row).into_iter()),
-                owner => builder.needed_by(owner, &owned, dofs(row).into_iter()),
+                owner if owner == rank => builder.needs(&owned, dofs.iter().copied()),
+                owner => builder.needed_by(owner, &owned, dofs.iter().copied()),
             }
         }
     }
-    builder.build(owned, distribution, size)
+    builder.build(owned, of_dof)
 }

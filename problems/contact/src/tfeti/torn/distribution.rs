@@ -57,9 +57,9 @@ impl Distribution {
         Self { communication, bounds, branches, branch_counts }
     }
 
-    /// The distribution of the subdomains where this one is that of clusters of `each` subdomains.
-    pub fn refined(&self, each: usize) -> Self {
-        Self::of_bounds(Arc::clone(&self.communication), self.bounds.iter().map(|bound| each * bound).collect())
+    /// The distribution of the subdomains where this one is that of clusters with these first subdomains.
+    pub fn refined(&self, starts: &[usize]) -> Self {
+        Self::of_bounds(Arc::clone(&self.communication), self.bounds.iter().map(|&bound| starts[bound]).collect())
     }
 
     /// The subdomains of this process.
@@ -119,19 +119,24 @@ impl Distribution {
         lengths.iter().map(|&length| values.by_ref().take(length as usize).collect()).collect()
     }
 
-    /// Values of all subdomains at process 0, `each` per subdomain, from those of the own ones; none at the others.
-    pub fn at_first(&self, own: &[f64], each: usize) -> Option<Vec<f64>> {
+    /// Values of all subdomains at process 0, from those of the own ones; none at the others. `starts`: first value of
+    /// every subdomain, then their number.
+    pub fn at_first(&self, own: &[f64], starts: &[usize]) -> Option<Vec<f64>> {
+        let count = |rank: usize| {
+            let subdomains = self.of(rank);
+            starts[subdomains.end] - starts[subdomains.start]
+        };
         let parcel = |rank: usize, outgoing: &[f64], count: usize| Parcel {
             rank,
             outgoing: outgoing.to_vec(),
-            incoming: vec![0.0; each * count],
+            incoming: vec![0.0; count],
         };
         if self.communication.rank() > 0 {
             self.communication.exchange(&mut [parcel(0, own, 0)]);
             return None;
         }
         let mut parcels: Vec<Parcel> =
-            (1..self.communication.size()).map(|rank| parcel(rank, &[], self.of(rank).len())).collect();
+            (1..self.communication.size()).map(|rank| parcel(rank, &[], count(rank))).collect();
         self.communication.exchange(&mut parcels);
         Some(own.iter().copied().chain(parcels.into_iter().flat_map(|parcel| parcel.incoming)).collect())
     }

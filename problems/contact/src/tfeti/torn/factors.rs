@@ -15,8 +15,7 @@
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
 use crate::body::elasticity::Material;
-use crate::body::elasticity::brick::Nodes;
-use crate::body::local_pattern::{LocalPattern, fixing_nodes};
+use crate::body::{Body, Piece, PiecePattern};
 use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
@@ -68,7 +67,7 @@ impl InteriorClass {
 /// The matrices and rigid motions of one subdomain.
 #[derive(Debug)]
 pub struct SubdomainFactors {
-    /// Values of the stiffness matrix K over [`LocalPattern::pattern`].
+    /// Values of the stiffness matrix K over [`PiecePattern::lower`].
     pub stiffness: Vec<f64>,
     /// Values of the stiffness matrix of the compressible neighbour of a nearly incompressible material.
     compressible: Option<Vec<f64>>,
@@ -93,25 +92,26 @@ const GENERALISED_INVERSE: f64 = 1e-8;
 const LOST_DIGITS: f64 = 1e-10;
 
 impl SubdomainFactors {
-    /// Assembles and factors one subdomain.
+    /// Assembles and factors one subdomain: a piece of a body at given positions of its nodes.
     ///
-    /// `coordinates` of its nodes; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class
-    /// to factor for the Dirichlet preconditioner.
+    /// `load`: consistent nodal loads; `interior`: class to factor for the Dirichlet preconditioner.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails.
     pub fn new(
-        pattern: &LocalPattern,
+        (body, piece): (&Body, &Piece),
         symbolic: &Arc<SymbolicFactor>,
-        material: &Material,
-        coordinates: &[[f64; 3]],
-        brick: impl Fn([usize; 3]) -> Nodes<f64>,
+        positions: &[[f64; 3]],
         load: &[f64],
         interior: Option<&InteriorClass>,
     ) -> Result<Self, ContactError> {
-        let stiffness = pattern.assemble(material, &brick);
-        let compressible = material.compressible_neighbour().map(|neighbour| pattern.assemble(&neighbour, &brick));
-        let modes = orthonormal_modes(coordinates);
+        let pattern = &*piece.pattern;
+        let stiffness = piece.assemble(body, positions, |material| *material);
+        let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
+        let is_near = body.materials().iter().any(|material| material.compressible_neighbour().is_some());
+        let compressible = is_near.then(|| piece.assemble(body, positions, near));
+        let coordinates: Vec<[f64; 3]> = piece.positions(positions).collect();
+        let modes = orthonormal_modes(&coordinates);
         let resultants = std::array::from_fn(|mode| dot(&modes[mode], load));
         let regularised = regularise(pattern, &stiffness, &modes);
         let inverse = symbolic.factorize(&regularised)?;
@@ -182,8 +182,8 @@ impl SubdomainFactors {
 }
 
 /// Values of K + ρNNᵀ.
-fn regularise(pattern: &LocalPattern, stiffness: &[f64], modes: &[Vec<f64>]) -> Vec<f64> {
-    let dofs: Vec<usize> = fixing_nodes(pattern.shape.cells).iter().flat_map(|node| 3 * node..3 * node + 3).collect();
+fn regularise(pattern: &PiecePattern, stiffness: &[f64], modes: &[Vec<f64>]) -> Vec<f64> {
+    let dofs: Vec<usize> = pattern.fixing.iter().flat_map(|node| 3 * node..3 * node + 3).collect();
     let mut restricted: Vec<Vec<f64>> = modes.iter().map(|mode| dofs.iter().map(|&dof| mode[dof]).collect()).collect();
     orthonormalise(&mut restricted);
     let rho = pattern.mean_diagonal(stiffness);
@@ -192,7 +192,7 @@ fn regularise(pattern: &LocalPattern, stiffness: &[f64], modes: &[Vec<f64>]) -> 
         for (second, &column) in dofs.iter().enumerate() {
             if row >= column {
                 let product: f64 = restricted.iter().map(|mode| mode[first] * mode[second]).sum();
-                let position = pattern.pattern.position(row, column).expect("invariant: fixing nodes are coupled");
+                let position = pattern.lower.position(row, column).expect("invariant: fixing nodes are coupled");
                 values[position] += rho * product;
             }
         }
@@ -202,18 +202,18 @@ fn regularise(pattern: &LocalPattern, stiffness: &[f64], modes: &[Vec<f64>]) -> 
 
 /// Probes K K⁺ K x = K x with one fixed vector; returns the forward error of K⁺.
 fn check_generalised_inverse(
-    pattern: &LocalPattern,
+    pattern: &PiecePattern,
     stiffness: &[f64],
     inverse: &NumericFactor,
     modes: &[Vec<f64>],
 ) -> Result<f64, ContactError> {
-    let dimension = pattern.pattern.dimension();
+    let dimension = pattern.lower.dimension();
     let probe: Vec<f64> = (0..dimension).map(|index| (1.7 * index as f64 + 0.3).sin()).collect();
     let (mut image, mut again) = (vec![0.0; dimension], vec![0.0; dimension]);
-    pattern.pattern.multiply(stiffness, &probe, &mut image);
+    pattern.lower.multiply(stiffness, &probe, &mut image);
     let mut solution = image.clone();
     inverse.solve_in_place(&mut solution);
-    pattern.pattern.multiply(stiffness, &solution, &mut again);
+    pattern.lower.multiply(stiffness, &solution, &mut again);
     add_scaled(&mut again, -1.0, &image);
     let error = (dot(&again, &again) / dot(&image, &image)).sqrt();
     if error.is_nan() || error > GENERALISED_INVERSE {

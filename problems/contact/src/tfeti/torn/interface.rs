@@ -52,12 +52,12 @@ impl InterfaceBuilder {
         }
     }
 
-    /// The interface of all rows; `size` dofs per subdomain.
-    pub fn build(self, owned: Range<usize>, distribution: &Distribution, size: usize) -> Interface {
+    /// The interface of all rows; `rank`: the process of a dof.
+    pub fn build(self, owned: Range<usize>, rank: impl Fn(usize) -> usize) -> Interface {
         let ghosts: Vec<usize> = self.ghosts.into_iter().collect();
         let mut incoming: BTreeMap<usize, Range<usize>> = BTreeMap::new();
         for (index, &dof) in ghosts.iter().enumerate() {
-            incoming.entry(distribution.owner(dof / size)).or_insert(index..index).end = index + 1;
+            incoming.entry(rank(dof)).or_insert(index..index).end = index + 1;
         }
         let mut outgoing = self.outgoing;
         let ranks: BTreeSet<usize> = outgoing.keys().chain(incoming.keys()).copied().collect();

@@ -1,7 +1,7 @@
 //! Torn bodies: what is fixed for a run, and what is factored for one shape.
 //!
 //! ```text
-//! scene ─ tearing ─ rows B, B_D (constraints), coarse pattern ─ TornModel ── shape ──▶ TornSystem: K⁺, R, K_II⁻¹ per subdomain
+//! pieces ─ numbering ─ rows B_E (constraints), coarse pattern ─ TornModel ── shape ──▶ TornSystem: K⁺, R, K_II⁻¹ per subdomain; B, B_D
 //! torn displacement ─ recovery ──▶ whole bodies;   loads of whole bodies ─ recovery, transposed ──▶ torn loads
 //! ```
 
@@ -12,6 +12,7 @@ mod constraints;
 mod distribution;
 mod factors;
 mod interface;
+mod joints;
 mod model;
 mod numbering;
 mod options;
@@ -32,4 +33,5 @@ pub use options::TornOptions;
 pub use preconditioner_kind::PreconditionerKind;
 pub use recovery::{torn_loads, whole_bodies};
 pub use system::TornSystem;
+pub(crate) use vectors::parts_mut;
 pub use vectors::{RowVector, TornVector};

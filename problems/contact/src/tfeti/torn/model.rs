@@ -1,21 +1,18 @@
 //! The torn scene: what is fixed for a run, and the factored system of a shape. A process holds its subdomains only.
 
-use crate::body::local_pattern::{LocalPattern, fixing_nodes};
-use crate::body::mesh::{Block, Subdomain, Tearing};
-use crate::body::shape_load::nodal_loads;
+use crate::body::loads::piece_loads;
+use crate::body::{Body, Piece};
 use crate::communication::Communication;
-use crate::equilibrium::{Configuration, ContactProblem};
+use crate::equilibrium::modes::MOTIONS;
+use crate::equilibrium::{Configuration, ContactProblem, ContactRows};
 use crate::error::ContactError;
-use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::linear::vector::{dot, norm};
-use crate::scene::BodyScene;
 use crate::tfeti::torn::cluster_factors::{ClusterFactors, moves_as_one_body};
-use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::coarse_pattern::CoarsePattern;
-use crate::tfeti::torn::constraints::Constraints;
+use crate::tfeti::torn::constraints::{Constraints, TornRows};
 use crate::tfeti::torn::distribution::Distribution;
 use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors};
 use crate::tfeti::torn::interface::Interface;
@@ -23,7 +20,6 @@ use crate::tfeti::torn::numbering::Numbering;
 use crate::tfeti::torn::options::TornOptions;
 use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
 use crate::tfeti::torn::row_sums::RowSums;
-use crate::tfeti::torn::scene_rows::BodyRows;
 use crate::tfeti::torn::system::TornSystem;
 use crate::tfeti::torn::vectors::{RowVector, TornVector};
 use rayon::prelude::*;
@@ -33,12 +29,10 @@ use std::sync::{Arc, OnceLock};
 /// One subdomain in the torn scene.
 #[derive(Debug)]
 pub struct TornSubdomain {
-    /// 0 for the lower, 1 for the upper body.
+    /// The body, and its piece.
     pub body: usize,
-    /// Its place in the block.
-    pub place: Subdomain,
-    /// Its first dof in the torn vectors of its process.
-    pub first_dof: usize,
+    pub piece: usize,
+    symbolic: Arc<SymbolicFactor>,
     interior: Option<Arc<InteriorClass>>,
 }
 
@@ -49,102 +43,104 @@ pub struct TornModel {
     pub problem: Arc<ContactProblem>,
     /// The subdomains of this process, in the order of all subdomains.
     pub subdomains: Vec<TornSubdomain>,
-    /// Bodies and places of all subdomains.
+    /// First dof of every subdomain of this process in its torn vectors, then their number.
+    pub starts: Arc<[usize]>,
+    /// Bodies and pieces of all subdomains.
     pub numbering: Numbering,
     /// Which process works on which subdomains.
     pub distribution: Arc<Distribution>,
     /// Which process works on which clusters of subdomains: what has rigid motions of its own.
     pub clusters: Arc<Distribution>,
-    /// The rows of B.
+    /// First subdomain of every cluster of this process, then their number.
+    cluster_starts: Arc<[usize]>,
+    /// What of B is the same for all shapes.
     pub constraints: Arc<Constraints>,
     /// Dofs that this process shares with others.
     pub interface: Interface,
-    /// Pattern shared by all subdomains.
-    pub pattern: LocalPattern,
     /// Pattern of the coarse matrices.
     pub coarse: Arc<CoarsePattern>,
-    symbolic: Arc<SymbolicFactor>,
-    /// Factors of the upper body.
-    fixed: OnceLock<FactoredBody>,
-    /// Number of torn dofs of all processes.
-    pub total_dofs: usize,
+    /// Factors of the bodies of fixed shape.
+    fixed: OnceLock<Vec<FactoredBody>>,
+    /// Rows of B where they are the same for all shapes.
+    fixed_rows: OnceLock<Arc<TornRows>>,
 }
 
-/// The factors of the subdomains and clusters of a body in this process.
-#[derive(Debug, Clone)]
+/// The factors of the subdomains and clusters of a body in this process, by their places there.
+#[derive(Debug, Clone, Default)]
 struct FactoredBody {
-    parts: Vec<Arc<SubdomainFactors>>,
-    clusters: Vec<Arc<ClusterFactors>>,
+    parts: Vec<(usize, Arc<SubdomainFactors>)>,
+    clusters: Vec<(usize, Arc<ClusterFactors>)>,
 }
 
-/// Work on a subdomain of the upper body relative to one of the lower body, whose shape changes: products alone, no
-/// factors and no sums for the derivative.
+/// Work on a subdomain of a body of fixed shape relative to one of the lower body, whose shape changes: products alone,
+/// no factors and no sums for the derivative.
 const FIXED_WEIGHT: f64 = 0.5;
+
+/// Symbolic factors and interior classes by what they depend on.
+#[derive(Default)]
+struct Analyses {
+    symbolic: HashMap<usize, Arc<SymbolicFactor>>,
+    interior: HashMap<(usize, Vec<bool>), Arc<InteriorClass>>,
+}
 
 impl TornModel {
     /// Tears the bodies of a problem and builds the rows of this process.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`] for clusters that do
-    /// not divide the subdomains, or whose subdomains the rows of B_c do not hold together.
+    /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`] for clusters whose
+    /// subdomains the rows of B_c do not hold together.
     pub fn new(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
-        let TornOptions { preconditioner, clusters: shape, communication } = options;
-        let counts = problem.scene.subdomains;
-        let boxes = cluster_counts(counts, shape)?;
-        let tearing = Tearing::new(&problem.grid, counts);
-        let size = tearing.subdomains[0].dof_count();
-        let numbering = Numbering::new(&tearing, counts, shape, problem.bodies().count());
-        let members = numbering.members();
-        let [clusters, distribution] = distributions(communication, &numbering);
-        let offsets = |body| (0..tearing.subdomains.len()).map(|index| size * numbering.number(body, index)).collect();
-        let bodies: Vec<BodyRows<'_>> = problem
-            .bodies()
-            .enumerate()
-            .map(|(body, scene)| BodyRows {
-                grid: &problem.grid,
-                tearing: &tearing,
-                scene,
-                offsets: offsets(body),
-                cluster_size: size * members,
-            })
-            .collect();
+        let TornOptions { preconditioner, clusters, communication } = options;
+        let numbering = Numbering::new(&problem.bodies, clusters);
+        let [clusters, distribution] = distributions(communication, &numbering, &problem.bodies);
+        let rows = problem.rows(&problem.start_positions())?;
+        let start = (&rows, problem.geometry.is_fixed());
         let (constraints, interface) =
-            Constraints::new(&problem.scene, &bodies, &problem.boundary, size, &distribution);
-        check_motions(&constraints, &numbering, &distribution, shape)?;
-        let coarse =
-            Arc::new(CoarsePattern::new(&constraints, &interface, &numbering, &clusters, boxes, size * members)?);
-        let cells = tearing.subdomains[0].cells;
-        let fixing = fixing_nodes(cells);
-        let pattern = LocalPattern::new(cells, &fixing);
-        let symbolic = pattern.symbolic(&fixing)?;
-        let mut classes = HashMap::new();
-        let subdomain = |(index, number): (usize, usize)| {
-            let first_dof = size * index;
+            Constraints::new(&problem.bodies, &problem.boundary, &numbering, &distribution, start);
+        check_motions(&constraints, &numbering, &distribution, &problem.bodies)?;
+        let centres = cluster_centres(&numbering, &problem.bodies);
+        let coarse = Arc::new(CoarsePattern::new(&constraints, &interface, &numbering, &clusters, &centres)?);
+        let own = distribution.owned();
+        let first = numbering.starts()[own.start];
+        let starts: Arc<[usize]> =
+            numbering.starts()[own.start..=own.end].iter().map(|start| start - first).collect();
+        let own_clusters = clusters.owned();
+        let cluster_starts: Arc<[usize]> = numbering.cluster_starts()[own_clusters.start..=own_clusters.end]
+            .iter()
+            .map(|number| number - own.start)
+            .collect();
+        let mut analyses = Analyses::default();
+        let subdomain = |number: usize| {
+            let (body, piece) = numbering.place(number);
+            let pattern = &problem.bodies[body].pieces[piece].pattern;
+            let symbolic = analyses.symbolic(pattern)?;
+            let dofs = starts[number - own.start]..starts[number - own.start + 1];
             let interior = match preconditioner {
-                PreconditionerKind::Dirichlet => {
-                    let joined = &constraints.joined[index / members].members[index % members].dofs;
-                    Some(interior_class(&mut classes, &pattern, &constraints, first_dof..first_dof + size, joined)?)
-                }
+                PreconditionerKind::Dirichlet => Some(analyses.interior(pattern, &constraints.touched[dofs])?),
                 PreconditionerKind::Lumped | PreconditionerKind::None => None,
             };
-            let (body, place) = numbering.place(number);
-            Ok(TornSubdomain { body, place: place.clone(), first_dof, interior })
+            Ok(TornSubdomain { body, piece, symbolic, interior })
         };
-        let subdomains = distribution.agreed(distribution.owned().enumerate().map(subdomain).collect())?;
+        let subdomains = distribution.agreed(own.clone().map(subdomain).collect())?;
         Ok(Self {
             problem,
             subdomains,
-            total_dofs: size * numbering.count(),
+            starts,
             numbering,
             distribution,
             clusters,
+            cluster_starts,
             constraints: Arc::new(constraints),
             interface,
-            pattern,
             coarse,
-            symbolic,
             fixed: OnceLock::new(),
+            fixed_rows: OnceLock::new(),
         })
+    }
+
+    /// Number of torn dofs of all processes.
+    pub fn total_dofs(&self) -> usize {
+        self.numbering.dof_count()
     }
 
     /// Number of dofs of other processes that rows of this one need: values received per product with B.
@@ -152,53 +148,65 @@ impl TornModel {
         self.interface.torn_count() - self.interface.owned_count()
     }
 
-    /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored
-    /// at the first call and shared afterwards. Factorisations are counted over all processes.
+    /// The body and the piece of a subdomain of this process.
+    pub fn piece(&self, index: usize) -> (&Body, &Piece) {
+        let TornSubdomain { body, piece, .. } = &self.subdomains[index];
+        (&self.problem.bodies[*body], &self.problem.bodies[*body].pieces[*piece])
+    }
+
+    /// Factors the subdomains of a shape. Bodies but the lower one keep their shape: they are factored at the first call
+    /// and shared afterwards. Factorisations are counted over all processes.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
-    pub fn factorize(&self, blocks: &[Block]) -> Result<TornSystem, ContactError> {
-        let lower = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
-        let count = |body: &FactoredBody| body.parts.iter().map(|part| part.factorizations()).sum::<usize>();
+    pub fn factorize(&self, configuration: &Configuration) -> Result<TornSystem, ContactError> {
+        let lower = self.factorize_body(0, &configuration.positions[0])?;
+        let count = |body: &FactoredBody| body.parts.iter().map(|(_, part)| part.factorizations()).sum::<usize>();
         let mut factored = count(&lower);
-        if let (Some(upper), Some(block), None) = (&self.problem.scene.upper, blocks.get(1), self.fixed.get()) {
-            let upper = self.factorize_body(1, &upper.body, block)?;
-            factored += count(&upper);
+        if self.fixed.get().is_none() {
+            let bodies = (1..self.problem.bodies.len()).map(|body| self.factorize_body(body, &configuration.positions[body]));
+            let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
+            factored += bodies.iter().map(count).sum::<usize>();
             // Another thread may have been first; its factors are the same.
-            let _ = self.fixed.set(upper);
+            let _ = self.fixed.set(bodies);
         }
-        let bodies = || std::iter::once(&lower).chain(self.fixed.get());
-        let mut parts: Vec<_> = bodies().map(|body| body.parts.iter().cloned()).collect();
-        let mut clusters: Vec<_> = bodies().map(|body| body.clusters.iter().cloned()).collect();
-        let parts: Vec<Arc<SubdomainFactors>> =
-            self.subdomains.iter().filter_map(|subdomain| parts[subdomain.body].next()).collect();
-        let first = self.subdomains.iter().step_by(self.numbering.members());
-        let clusters = first.filter_map(|subdomain| clusters[subdomain.body].next()).collect();
+        let bodies = || std::iter::once(&lower).chain(self.fixed.get().into_iter().flatten());
+        let mut parts: Vec<(usize, Arc<SubdomainFactors>)> = bodies().flat_map(|body| body.parts.clone()).collect();
+        parts.sort_by_key(|(index, _)| *index);
+        let mut clusters: Vec<(usize, Arc<ClusterFactors>)> = bodies().flat_map(|body| body.clusters.clone()).collect();
+        clusters.sort_by_key(|(index, _)| *index);
         let factorizations = self.distribution.sum_of_processes(factored as f64) as usize;
-        let forward_error = parts.iter().map(|part| part.forward_error).fold(0.0, f64::max);
-        let forward_error = self.distribution.largest(forward_error);
-        Ok(TornSystem { parts, clusters, factorizations, forward_error })
+        let forward_error = parts.iter().map(|(_, part)| part.forward_error).fold(0.0, f64::max);
+        Ok(TornSystem {
+            parts: parts.into_iter().map(|(_, part)| part).collect(),
+            starts: Arc::clone(&self.starts),
+            rows: self.rows_of(&configuration.rows),
+            clusters: clusters.into_iter().map(|(_, cluster)| cluster).collect(),
+            cluster_starts: Arc::clone(&self.cluster_starts),
+            factorizations,
+            forward_error: self.distribution.largest(forward_error),
+        })
+    }
+
+    /// B and B_D of a shape.
+    fn rows_of(&self, rows: &ContactRows) -> Arc<TornRows> {
+        let build = || Arc::new(self.constraints.rows_of(rows, &self.interface, &self.distribution));
+        if self.problem.geometry.is_fixed() { Arc::clone(self.fixed_rows.get_or_init(build)) } else { build() }
     }
 
     /// The factors of the subdomains and clusters of a body in this process.
-    fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<FactoredBody, ContactError> {
-        let factor = |subdomain: &TornSubdomain| {
-            let (place, coordinates) = (&subdomain.place, coordinates(&subdomain.place, block));
-            let factors = SubdomainFactors::new(
-                &self.pattern,
-                &self.symbolic,
-                &scene.material,
-                &coordinates,
-                |local| block.brick(lattice::add(local, place.first_cell)),
-                &nodal_loads(block, place, &scene.loads),
-                subdomain.interior.as_deref(),
-            )?;
-            Ok(Arc::new(factors))
+    fn factorize_body(&self, body: usize, positions: &[[f64; 3]]) -> Result<FactoredBody, ContactError> {
+        let factor = |(index, subdomain): (usize, &TornSubdomain)| {
+            let (body, piece) = self.piece(index);
+            let load = piece_loads(body, piece, positions);
+            let interior = subdomain.interior.as_deref();
+            let factors = SubdomainFactors::new((body, piece), &subdomain.symbolic, positions, &load, interior)?;
+            Ok((index, Arc::new(factors)))
         };
-        let own = self.subdomains.par_iter().filter(|subdomain| subdomain.body == body);
-        let parts: Result<Vec<Arc<SubdomainFactors>>, ContactError> = own.map(factor).collect();
-        let factored =
-            parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, block, &parts)?, parts }));
+        let own = self.subdomains.par_iter().enumerate().filter(|(_, subdomain)| subdomain.body == body);
+        let parts: Result<Vec<(usize, Arc<SubdomainFactors>)>, ContactError> = own.map(factor).collect();
+        let factored = parts
+            .and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, positions, &parts)?, parts }));
         self.distribution.agreed(factored)
     }
 
@@ -206,22 +214,26 @@ impl TornModel {
     fn join_body(
         &self,
         body: usize,
-        block: &Block,
-        parts: &[Arc<SubdomainFactors>],
-    ) -> Result<Vec<Arc<ClusterFactors>>, ContactError> {
-        let members = self.numbering.members();
-        if members == 1 {
+        positions: &[[f64; 3]],
+        parts: &[(usize, Arc<SubdomainFactors>)],
+    ) -> Result<Vec<(usize, Arc<ClusterFactors>)>, ContactError> {
+        if !self.numbering.is_joined() {
             return Ok(vec![]);
         }
-        let own = self.subdomains.par_chunks(members).zip(&self.constraints.joined);
-        let own: Vec<_> = own.filter(|(subdomains, _)| subdomains[0].body == body).collect();
-        let join = |((subdomains, rows), parts): (&(&[TornSubdomain], &ClusterRows), &[Arc<SubdomainFactors>])| {
+        let own = (0..self.cluster_starts.len() - 1).into_par_iter();
+        let own = own.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body);
+        let join = |cluster: usize| {
+            let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
             let coordinates: Vec<Vec<[f64; 3]>> =
-                subdomains.iter().map(|subdomain| coordinates(&subdomain.place, block)).collect();
-            let stiffness = self.pattern.mean_diagonal(&parts[0].stiffness);
-            ClusterFactors::new(rows, parts, &coordinates, stiffness).map(Arc::new)
+                members.clone().map(|index| self.piece(index).1.positions(positions).collect()).collect();
+            let first = parts.partition_point(|(index, _)| *index < members.start);
+            let parts: Vec<Arc<SubdomainFactors>> =
+                parts[first..first + members.len()].iter().map(|(_, part)| Arc::clone(part)).collect();
+            let stiffness = self.piece(members.start).1.pattern.mean_diagonal(&parts[0].stiffness);
+            let factors = ClusterFactors::new(&self.constraints.joined[cluster], &parts, &coordinates, stiffness)?;
+            Ok((cluster, Arc::new(factors)))
         };
-        own.par_iter().zip(parts.par_chunks(members)).map(join).collect()
+        own.map(join).collect()
     }
 
     /// The class of a subdomain by its interior dofs: those without rows; none if the preconditioner needs none.
@@ -233,6 +245,19 @@ impl TornModel {
     pub fn rows_times<V: Entry>(&self, rows: &Csr, torn: &mut [V]) -> RowVector<V> {
         self.interface.complete(&self.distribution, torn);
         self.constraints.multiply(rows, torn, &self.distribution)
+    }
+
+    /// Σ_sides weight · (mean over the copies) of torn displacements at every contact node, along the axes.
+    pub fn contact_displacements(&self, torn: &TornVector) -> Vec<[f64; 3]> {
+        let mut torn = torn.clone();
+        self.interface.complete(&self.distribution, &mut torn.0);
+        self.constraints.contact_values(&self.problem.boundary, &torn.0, &self.interface, &self.distribution)
+    }
+
+    /// Calls `add(dof, force)` with what vectors at the contact nodes, one per node, are on the dofs of this process:
+    /// the transpose of [`contact_displacements`](Self::contact_displacements).
+    pub fn spread_contact(&self, vectors: &[[f64; 3]], add: impl FnMut(usize, f64)) {
+        self.constraints.spread(vectors, &self.interface, add);
     }
 
     /// Inner products of vectors over rows.
@@ -247,23 +272,18 @@ impl TornModel {
 
     /// Coarse amplitudes of motions that nothing holds: Rᵀ of their displacement on all subdomains, of unit length.
     pub fn grounded_amplitudes(&self, system: &TornSystem, configuration: &Configuration) -> Vec<Vec<f64>> {
-        let Configuration { blocks, rigid, grounded, .. } = configuration;
+        let Configuration { positions, rigid, grounded, .. } = configuration;
         let amplitudes = |motion: &Vec<f64>| {
-            let mut amplitudes = Vec::with_capacity(6 * self.subdomains.len());
-            for (subdomain, part) in self.subdomains.iter().zip(&system.parts) {
-                let coefficients = &motion[6 * subdomain.body..6 * subdomain.body + 6];
-                let place = &subdomain.place;
-                let mut displacement = Vec::with_capacity(place.dof_count());
-                for node in 0..place.node_count() {
-                    let point = blocks[subdomain.body].coordinates(place.block_position(node));
-                    let basis = rigid.frames[subdomain.body].motions(point);
-                    for component in 0..3 {
-                        displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
-                    }
-                }
+            let mut amplitudes = Vec::with_capacity(MOTIONS * self.subdomains.len());
+            for (index, (subdomain, part)) in self.subdomains.iter().zip(&system.parts).enumerate() {
+                let body = subdomain.body;
+                let coefficients = &motion[MOTIONS * body..MOTIONS * (body + 1)];
+                let nodes = self.piece(index).1.positions(&positions[body]);
+                let displacement: Vec<f64> =
+                    nodes.flat_map(|point| rigid.displacement(body, coefficients, point)).collect();
                 amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
             }
-            let mut amplitudes = self.clusters.gather(&system.cluster_resultants(amplitudes), 6);
+            let mut amplitudes = self.clusters.gather(&system.cluster_resultants(amplitudes), MOTIONS);
             let length = norm(&amplitudes);
             amplitudes.iter_mut().for_each(|amplitude| *amplitude /= length);
             amplitudes
@@ -273,100 +293,133 @@ impl TornModel {
 
     /// Mean over the contact nodes of the stiffness diagonals of the bodies in series, N/mm.
     pub fn contact_stiffness(&self, system: &TornSystem) -> f64 {
-        let size = self.pattern.pattern.dimension();
-        let starts = self.pattern.pattern.starts();
         let points = &self.problem.boundary.points;
         let own = self.constraints.own_contact_rows(&self.distribution);
-        // Per body: the sum of the diagonals at the copies of a node, in its normal row.
+        let scales: Vec<f64> = self.constraints.contact_scales(&self.problem.boundary).collect();
+        // Per body: the diagonals at the copies of a node, in its normal row.
         let of_body = |body: usize| {
             let mut torn = self.zeros();
-            for (subdomain, part) in self.subdomains.iter().zip(&system.parts).filter(|(own, _)| own.body == body) {
-                let diagonal = &mut torn.0[subdomain.first_dof..subdomain.first_dof + size];
+            for (index, part) in system.parts.iter().enumerate().filter(|(index, _)| self.subdomains[*index].body == body) {
+                let starts = self.piece(index).1.pattern.lower.starts();
+                let diagonal = &mut torn.0[system.dofs(index)];
                 for (dof, diagonal) in diagonal.iter_mut().enumerate() {
                     *diagonal = part.boundary_stiffness()[starts[dof]];
                 }
             }
             self.interface.complete(&self.distribution, &mut torn.0);
             let first = self.constraints.equality_count;
-            let sum = |&row: &usize| vec![self.constraints.rows.row(first + row).map(|(dof, _)| torn.0[dof]).sum()];
+            // Entries of a row are d/(mν): their squares times m²ν² weigh the diagonals, one sum per copy.
+            let sum = |&row: &usize| {
+                let entries = || system.rows.rows.row(first + row).filter(|(place, _)| torn.0[*place] > 0.0);
+                let square: f64 = entries().map(|(_, value)| value * value).sum();
+                let weighted: f64 = entries().map(|(place, value)| value * value * torn.0[place]).sum();
+                let copies = if square > 0.0 { 1.0 / (square * scales[row] * scales[row]) } else { 0.0 };
+                vec![if square > 0.0 { copies * weighted / square } else { 0.0 }]
+            };
             self.constraints.complete_contact(&own.iter().map(sum).collect::<Vec<_>>(), &self.distribution).concat()
         };
-        let diagonals: Vec<Vec<f64>> = (0..self.problem.bodies().count()).map(of_body).collect();
-        let series = |row: usize| match &diagonals[..] {
-            [lower, upper] => 1.0 / (1.0 / lower[row] + 1.0 / upper[row]),
-            bodies => bodies[0][row],
+        let diagonals: Vec<Vec<f64>> = (0..self.problem.bodies.len()).map(of_body).collect();
+        let series = |row: usize| {
+            let own: Vec<f64> = diagonals.iter().map(|body| body[row]).filter(|diagonal| *diagonal > 0.0).collect();
+            match own[..] {
+                [only] => only,
+                _ => 1.0 / own.iter().map(|diagonal| 1.0 / diagonal).sum::<f64>(),
+            }
         };
         points.iter().map(|point| series(point.start)).sum::<f64>() / points.len() as f64
     }
 }
 
+impl Analyses {
+    /// The symbolic factor of a pattern.
+    fn symbolic(&mut self, pattern: &Arc<crate::body::PiecePattern>) -> Result<Arc<SymbolicFactor>, ContactError> {
+        let key = Arc::as_ptr(pattern) as usize;
+        if let Some(known) = self.symbolic.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let symbolic = pattern.symbolic(&pattern.fixing)?;
+        self.symbolic.insert(key, Arc::clone(&symbolic));
+        Ok(symbolic)
+    }
+
+    /// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B
+    /// and B_c. Dofs with rows of B_c have no jumps between subdomains: contact rows alone move them in the
+    /// preconditioner.
+    fn interior(
+        &mut self,
+        pattern: &Arc<crate::body::PiecePattern>,
+        touched: &[bool],
+    ) -> Result<Arc<InteriorClass>, ContactError> {
+        let marked: Vec<bool> = touched.iter().map(|touched| !touched).collect();
+        let key = (Arc::as_ptr(pattern) as usize, marked);
+        if let Some(class) = self.interior.get(&key) {
+            return Ok(Arc::clone(class));
+        }
+        let class = Arc::new(InteriorClass::new(&pattern.lower, &key.1, pattern.elimination_order(&[]))?);
+        self.interior.insert(key, Arc::clone(&class));
+        Ok(class)
+    }
+}
+
 /// Which process works on which clusters, and on which subdomains.
-fn distributions(communication: Arc<dyn Communication>, numbering: &Numbering) -> [Arc<Distribution>; 2] {
-    let members = numbering.members();
-    let weight = |cluster| if numbering.place(cluster * members).0 == 0 { 1.0 } else { FIXED_WEIGHT };
+fn distributions(
+    communication: Arc<dyn Communication>,
+    numbering: &Numbering,
+    bodies: &[Body],
+) -> [Arc<Distribution>; 2] {
+    // Subdomains of different sizes take work in proportion to their nodes, roughly.
+    let nodes = |number: usize| {
+        let (body, piece) = numbering.place(number);
+        let weight = if body == 0 { 1.0 } else { FIXED_WEIGHT };
+        weight * bodies[body].pieces[piece].nodes.len() as f64
+    };
+    let weight = |cluster| numbering.members(cluster).map(nodes).sum();
     let weights: Vec<f64> = (0..numbering.cluster_count()).map(weight).collect();
     let clusters = Arc::new(Distribution::new(communication, &weights));
-    let subdomains = if members == 1 { Arc::clone(&clusters) } else { Arc::new(clusters.refined(members)) };
+    let subdomains = match numbering.is_joined() {
+        true => Arc::new(clusters.refined(numbering.cluster_starts())),
+        false => Arc::clone(&clusters),
+    };
     [clusters, subdomains]
 }
 
-fn cluster_counts(counts: [usize; 3], shape: [usize; 3]) -> Result<[usize; 3], ContactError> {
-    if (0..3).any(|axis| shape[axis] == 0 || !counts[axis].is_multiple_of(shape[axis])) {
-        let reason = format!("their numbers have to divide the {counts:?} subdomains of a body");
-        return Err(ContactError::Clusters { shape, reason });
-    }
-    Ok(std::array::from_fn(|axis| counts[axis] / shape[axis]))
+/// Means of the nodes of the clusters at the reference shape.
+fn cluster_centres(numbering: &Numbering, bodies: &[Body]) -> Vec<[f64; 3]> {
+    let centre = |cluster: usize| {
+        let nodes = numbering.members(cluster).flat_map(|number| {
+            let (body, piece) = numbering.place(number);
+            bodies[body].pieces[piece].positions(bodies[body].mesh.nodes()).collect::<Vec<_>>()
+        });
+        let (sum, count) = nodes.fold(([0.0; 3], 0.0), |(sum, count), x| {
+            (std::array::from_fn(|axis: usize| sum[axis] + x[axis]), count + 1.0)
+        });
+        sum.map(|sum: f64| sum / count)
+    };
+    (0..numbering.cluster_count()).map(centre).collect()
 }
 
-/// Refuses clusters with other motions than those of a rigid body. Whether nodes hold subdomains together does not
-/// depend on the shape of the body; bricks of edge one stand for all.
+/// Refuses clusters with other motions than those of a rigid body, by their reference shape.
 fn check_motions(
     constraints: &Constraints,
     numbering: &Numbering,
     distribution: &Distribution,
-    shape: [usize; 3],
+    bodies: &[Body],
 ) -> Result<(), ContactError> {
-    let members = numbering.members();
-    if members == 1 {
+    if !numbering.is_joined() {
         return Ok(());
     }
     let nodes = |number: usize| {
-        let place = numbering.place(number).1;
-        (0..place.node_count()).map(|node| place.block_position(node).map(|index| index as f64)).collect()
+        let (body, piece) = numbering.place(number);
+        bodies[body].pieces[piece].positions(bodies[body].mesh.nodes()).collect::<Vec<_>>()
     };
-    let first = distribution.owned().start;
+    let own = distribution.owned();
+    let first = if own.is_empty() { 0 } else { numbering.cluster_of(own.start) };
     let loose = constraints.joined.par_iter().enumerate().any(|(index, rows)| {
-        let numbers = first + members * index..first + members * (index + 1);
-        !moves_as_one_body(rows, &numbers.map(nodes).collect::<Vec<_>>())
+        !moves_as_one_body(rows, &numbering.members(first + index).map(nodes).collect::<Vec<_>>())
     });
-    let reason = "their inner nodes do not hold the subdomains together; subdomains need more bricks".to_string();
+    let reason = "their inner nodes do not hold the subdomains together; subdomains need more cells".to_string();
     match distribution.communication().agree(loose.then_some(reason)) {
-        Some(reason) => Err(ContactError::Clusters { shape, reason }),
+        Some(reason) => Err(ContactError::Clusters { count: numbering.cluster_count(), reason }),
         None => Ok(()),
     }
-}
-
-/// Coordinates of the nodes of a subdomain.
-fn coordinates(place: &Subdomain, block: &Block) -> Vec<[f64; 3]> {
-    (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect()
-}
-
-/// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B
-/// and B_c. `joined`: its dofs with rows of B_c. They have no jumps between subdomains: contact rows alone move them in
-/// the preconditioner.
-fn interior_class(
-    classes: &mut HashMap<Vec<bool>, Arc<InteriorClass>>,
-    pattern: &LocalPattern,
-    constraints: &Constraints,
-    dofs: std::ops::Range<usize>,
-    joined: &[usize],
-) -> Result<Arc<InteriorClass>, ContactError> {
-    let mut marked: Vec<bool> = dofs.map(|dof| constraints.transposed.row(dof).next().is_none()).collect();
-    joined.iter().for_each(|&dof| marked[dof] = false);
-    if let Some(class) = classes.get(&marked) {
-        return Ok(Arc::clone(class));
-    }
-    let class = Arc::new(InteriorClass::new(&pattern.pattern, &marked, pattern.elimination_order(&[]))?);
-    classes.insert(marked, Arc::clone(&class));
-    Ok(class)
 }

@@ -1,140 +1,164 @@
 //! The order of the subdomains: neighbours in the order are neighbours in the bodies, so that a range of it is compact.
 //!
 //! ```text
-//! a box of clusters is halved across its longest axis, again and again;   cluster k of the lower body, k of the upper one, k + 1 …
+//! pieces of all bodies ─ by clusters of one body ─ halved across the longest extent of their centres, again and again
 //! ```
 //! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is
 //! one. The order does not depend on the number of processes. Each gets a range of it by recursive bisection.
 
-use crate::body::mesh::{Subdomain, Tearing};
-use crate::lattice;
+use crate::body::{Body, Piece};
+use crate::linear::ordering::longest_axis;
+use std::ops::Range;
 
 /// Numbers of the subdomains of all bodies.
 #[derive(Debug)]
 pub struct Numbering {
-    /// Bodies and places of the subdomains, by number.
-    places: Vec<(usize, Subdomain)>,
-    /// Numbers of the subdomains of every body, by their index in the tearing.
+    /// Bodies and pieces of the subdomains, by number.
+    places: Vec<(usize, usize)>,
+    /// Numbers of the subdomains of every body, by their pieces.
     numbers: Vec<Vec<usize>>,
-    /// Numbers of the clusters of every body, by their index in the box of clusters.
-    clusters: Vec<Vec<usize>>,
-    members: usize,
+    /// First dof of every subdomain, then the number of torn dofs.
+    starts: Vec<usize>,
+    /// First subdomain of every cluster, then the number of subdomains.
+    clusters: Vec<usize>,
+    /// The cluster of every subdomain.
+    cluster_of: Vec<usize>,
 }
 
+/// A point with what it stands for.
+type Placed<T> = ([f64; 3], T);
+
 impl Numbering {
-    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis, in clusters of `shape` subdomains
-    /// per axis, which divides `counts`.
-    pub fn new(tearing: &Tearing, counts: [usize; 3], shape: [usize; 3], bodies: usize) -> Self {
-        let boxes: [usize; 3] = std::array::from_fn(|axis| counts[axis] / shape[axis]);
-        let (mut order, mut inner) = (Vec::new(), Vec::new());
-        bisect([0; 3], boxes, &mut |place| order.push(place));
-        bisect([0; 3], shape, &mut |place| inner.push(place));
-        let (mut numbers, mut clusters) =
-            (vec![vec![0; tearing.subdomains.len()]; bodies], vec![vec![0; order.len()]; bodies]);
-        let mut places = Vec::with_capacity(bodies * tearing.subdomains.len());
-        for cluster in order {
-            let first: [usize; 3] = std::array::from_fn(|axis| cluster[axis] * shape[axis]);
-            for body in 0..bodies {
-                clusters[body][lattice::index(boxes, cluster)] = places.len() / inner.len();
-                for &place in &inner {
-                    let index = lattice::index(counts, lattice::add(first, place));
-                    numbers[body][index] = places.len();
-                    places.push((body, tearing.subdomains[index].clone()));
-                }
-            }
+    /// Numbers the pieces of bodies, in about so many clusters; none: every piece is one.
+    pub fn new(bodies: &[Body], clusters: Option<usize>) -> Self {
+        let all: usize = bodies.iter().map(|body| body.pieces.len()).sum();
+        let mut groups: Vec<Placed<Vec<Placed<(usize, usize)>>>> = Vec::new();
+        for (number, body) in bodies.iter().enumerate() {
+            let piece = |(index, piece): (usize, &Piece)| (centre(body, piece), (number, index));
+            let pieces: Vec<Placed<(usize, usize)>> = body.pieces.iter().enumerate().map(piece).collect();
+            let share = |count: usize| (count * pieces.len() + all / 2) / all;
+            let count = clusters.map_or(pieces.len(), share).clamp(1, pieces.len());
+            let mut own = Vec::new();
+            divide(pieces, count, &mut own);
+            groups.extend(own.into_iter().map(|group| (mean(&group), group)));
         }
-        Self { places, numbers, clusters, members: inner.len() }
+        let mut order = Vec::with_capacity(groups.len());
+        let count = groups.len();
+        divide(groups, count, &mut order);
+        let (mut places, mut cluster_starts) = (Vec::with_capacity(all), vec![0]);
+        for (_, group) in order.into_iter().flatten() {
+            let (count, mut inner) = (group.len(), Vec::new());
+            divide(group, count, &mut inner);
+            places.extend(inner.into_iter().flatten().map(|(_, place)| place));
+            cluster_starts.push(places.len());
+        }
+        let mut numbers: Vec<Vec<usize>> = bodies.iter().map(|body| vec![0; body.pieces.len()]).collect();
+        let mut starts = vec![0];
+        for (number, &(body, piece)) in places.iter().enumerate() {
+            numbers[body][piece] = number;
+            starts.push(starts[number] + bodies[body].pieces[piece].dof_count());
+        }
+        let of_cluster = |(cluster, pair): (usize, &[usize])| std::iter::repeat_n(cluster, pair[1] - pair[0]);
+        let cluster_of = cluster_starts.windows(2).enumerate().flat_map(of_cluster).collect();
+        Self { places, numbers, starts, clusters: cluster_starts, cluster_of }
     }
 
-    /// Number of subdomains of a cluster.
-    pub fn members(&self) -> usize {
-        self.members
+    /// Whether clusters consist of several subdomains.
+    pub fn is_joined(&self) -> bool {
+        self.cluster_count() < self.count()
     }
 
     pub fn cluster_count(&self) -> usize {
-        self.count() / self.members
+        self.clusters.len() - 1
     }
 
-    /// The number of a cluster of a body, by its index in the box of clusters.
-    pub fn cluster(&self, body: usize, index: usize) -> usize {
-        self.clusters[body][index]
+    /// The subdomains of a cluster.
+    pub fn members(&self, cluster: usize) -> Range<usize> {
+        self.clusters[cluster]..self.clusters[cluster + 1]
     }
 
+    /// First subdomain of every cluster, then the number of subdomains.
+    pub fn cluster_starts(&self) -> &[usize] {
+        &self.clusters
+    }
+
+    /// The cluster of a subdomain.
+    pub fn cluster_of(&self, number: usize) -> usize {
+        self.cluster_of[number]
+    }
+
+    /// Number of subdomains.
     pub fn count(&self) -> usize {
         self.places.len()
     }
 
-    pub fn body_count(&self) -> usize {
-        self.numbers.len()
+    /// Number of torn dofs.
+    pub fn dof_count(&self) -> usize {
+        self.starts[self.count()]
     }
 
-    /// Body and place of the subdomain of a number.
-    pub fn place(&self, number: usize) -> (usize, &Subdomain) {
-        let (body, place) = &self.places[number];
-        (*body, place)
+    /// First dof of every subdomain, then the number of torn dofs.
+    pub fn starts(&self) -> &[usize] {
+        &self.starts
     }
 
-    /// The number of a subdomain of a body.
-    pub fn number(&self, body: usize, index: usize) -> usize {
-        self.numbers[body][index]
+    /// The subdomain of a torn dof.
+    pub fn owner(&self, dof: usize) -> usize {
+        self.starts.partition_point(|&start| start <= dof) - 1
     }
 
-    /// The numbers and places of the subdomains of a body, in the order of the tearing.
-    pub fn of_body(&self, body: usize) -> impl Iterator<Item = (usize, &Subdomain)> {
-        self.numbers[body].iter().map(|&number| (number, self.place(number).1))
+    /// Body and piece of the subdomain of a number.
+    pub fn place(&self, number: usize) -> (usize, usize) {
+        self.places[number]
+    }
+
+    /// The number of a piece of a body.
+    pub fn number(&self, body: usize, piece: usize) -> usize {
+        self.numbers[body][piece]
     }
 }
 
-/// Visits the points from `first` to `end` of a box, each half after the other.
-fn bisect(first: [usize; 3], end: [usize; 3], visit: &mut impl FnMut([usize; 3])) {
-    let size = lattice::subtract(end, first);
-    let axis = (0..3).max_by_key(|&axis| (size[axis], 2 - axis)).unwrap_or(0);
-    if size[axis] == 1 {
-        visit(first);
-        return;
+/// Mean of the nodes of a piece at the reference shape.
+fn centre(body: &Body, piece: &Piece) -> [f64; 3] {
+    let points: Vec<Placed<()>> = piece.positions(body.mesh.nodes()).map(|point| (point, ())).collect();
+    mean(&points)
+}
+
+fn mean<T>(points: &[Placed<T>]) -> [f64; 3] {
+    let count = points.len().max(1) as f64;
+    std::array::from_fn(|axis| points.iter().map(|(point, _)| point[axis]).sum::<f64>() / count)
+}
+
+/// Divides points into so many groups by halving them across their longest extent.
+fn divide<T>(mut points: Vec<Placed<T>>, count: usize, groups: &mut Vec<Vec<Placed<T>>>) {
+    if count <= 1 {
+        return groups.push(points);
     }
-    let (mut middle_end, mut middle) = (end, first);
-    middle[axis] += size[axis] / 2;
-    middle_end[axis] = middle[axis];
-    bisect(first, middle_end, visit);
-    bisect(middle, end, visit);
+    let axis = longest_axis(points.iter().map(|(point, _)| *point));
+    points.sort_by(|(a, _), (b, _)| a[axis].total_cmp(&b[axis]));
+    let left = count / 2;
+    let second = points.split_off(points.len() * left / count);
+    divide(points, left, groups);
+    divide(second, count - left, groups);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::mesh::Grid;
 
     #[test]
-    fn every_subdomain_has_a_number_and_ranges_are_boxes() {
-        let counts = [3, 4, 2];
-        let tearing = Tearing::new(&Grid { cells: [6, 8, 2], size: [1.0, 1.0] }, counts);
-        let numbering = Numbering::new(&tearing, counts, [1; 3], 2);
-        assert_eq!(numbering.count(), 48);
-        for body in 0..2 {
-            for (index, place) in tearing.subdomains.iter().enumerate() {
-                assert_eq!(numbering.place(numbering.number(body, index)), (body, place));
-            }
-            assert_eq!(numbering.of_body(body).count(), 24);
-        }
-        // Half of the order is half of the box, across its longest axis.
-        assert!((0..24).all(|number| numbering.place(number).1.first_cell[1] < 4));
-        assert!((24..48).all(|number| numbering.place(number).1.first_cell[1] >= 4));
-    }
-
-    #[test]
-    fn the_subdomains_of_a_cluster_follow_each_other() {
-        let (counts, shape) = ([6, 4, 2], [3, 2, 1]);
-        let tearing = Tearing::new(&Grid { cells: [6, 4, 2], size: [1.0, 1.0] }, counts);
-        let numbering = Numbering::new(&tearing, counts, shape, 2);
-        assert_eq!((numbering.members(), numbering.cluster_count()), (6, 16));
-        for body in 0..2 {
-            for (index, place) in tearing.subdomains.iter().enumerate() {
-                let number = numbering.number(body, index);
-                assert_eq!(numbering.place(number), (body, place));
-                let cluster = std::array::from_fn(|axis| place.first_cell[axis] / shape[axis]);
-                assert_eq!(number / 6, numbering.cluster(body, lattice::index([2, 2, 2], cluster)));
-            }
-        }
+    fn points_are_divided_evenly_and_compactly() {
+        let points: Vec<Placed<usize>> = (0..24).map(|i| ([(i % 6) as f64, (i / 6) as f64, 0.0], i)).collect();
+        let mut groups = Vec::new();
+        divide(points, 4, &mut groups);
+        assert!(groups.iter().all(|group| group.len() == 6));
+        let extent = |axis: usize| {
+            let length = |group: &Vec<Placed<usize>>| {
+                let along = || group.iter().map(|(point, _)| point[axis]);
+                along().fold(0.0, f64::max) - along().fold(9.0, f64::min)
+            };
+            groups.iter().map(length).fold(0.0, f64::max)
+        };
+        assert!(extent(0) <= 2.0 && extent(1) <= 1.0, "{groups:?}");
     }
 }

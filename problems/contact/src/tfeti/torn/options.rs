@@ -9,16 +9,16 @@ use std::sync::Arc;
 pub struct TornOptions {
     /// The preconditioner of the dual operator.
     pub preconditioner: PreconditionerKind,
-    /// Subdomains per axis of a cluster, which divide those of a body. The subdomains of a cluster share six rigid
-    /// motions, so that the coarse problem has six unknowns per cluster (hybrid total FETI). One subdomain per cluster
-    /// is total FETI.
-    pub clusters: [usize; 3],
+    /// Number of clusters into which the subdomains of all bodies are joined, about. The subdomains of a cluster share
+    /// six rigid motions, so that the coarse problem has six unknowns per cluster (hybrid total FETI). None: every
+    /// subdomain by itself, which is total FETI.
+    pub clusters: Option<usize>,
     /// What connects the processes; each of them works on its own clusters.
     pub communication: Arc<dyn Communication>,
 }
 
 impl Default for TornOptions {
     fn default() -> Self {
-        Self { preconditioner: PreconditionerKind::default(), clusters: [1; 3], communication: Arc::new(InProcess) }
+        Self { preconditioner: PreconditionerKind::default(), clusters: None, communication: Arc::new(InProcess) }
     }
 }

@@ -1,74 +1,84 @@
 //! Displacements of whole bodies from those of their torn pieces, and the transposed map.
 
-use crate::body::mesh::Block;
-use crate::equilibrium::SolvedBody;
-use crate::lattice;
+use crate::equilibrium::{Positions, SolvedBody};
 use crate::tfeti::torn::model::TornModel;
 use crate::tfeti::torn::vectors::TornVector;
+use std::sync::Arc;
 
 /// All bodies of a shape, lower first, from the displacements over the torn dofs of this process; the copies of a node
 /// are averaged. Process 0 alone has them: nobody else needs the memory that whole bodies take.
-pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
-    let size = model.pattern.pattern.dimension();
+pub fn whole_bodies(model: &TornModel, positions: &Positions, torn: &TornVector) -> Vec<SolvedBody> {
     let own = &torn.0[..model.interface.owned_count()];
-    let Some(all) = model.distribution.at_first(own, size) else { return Vec::new() };
-    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &all)).collect()
+    let Some(all) = model.distribution.at_first(own, model.numbering.starts()) else { return Vec::new() };
+    (0..positions.len()).map(|body| whole_body(model, body, positions, &all)).collect()
 }
 
 /// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each
-/// of the c copies of a node carries 1/c of its entries.
+/// of the c copies of a node carries 1/c of its entries; entries of a tied node go to its ends.
 pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
-    let grid = &model.problem.grid;
-    let count = grid.node_count();
-    // All bodies are torn alike.
-    let mut copies = vec![0.0; count];
-    for (_, place) in model.numbering.of_body(0) {
-        (0..place.node_count()).for_each(|local| copies[grid.node(place.block_position(local))] += 1.0);
-    }
     let mut torn = model.zeros();
-    for subdomain in &model.subdomains {
-        let place = &subdomain.place;
-        for local in 0..place.node_count() {
-            let node = grid.node(place.block_position(local));
-            let (from, to) = (3 * (subdomain.body * count + node), subdomain.first_dof + 3 * local);
-            for component in 0..3 {
-                torn.0[to + component] = loads[from + component] / copies[node];
+    let mut first = 0;
+    for (number, body) in model.problem.bodies.iter().enumerate() {
+        let count = body.mesh.node_count();
+        let mut own: Vec<[f64; 3]> = loads[first..first + 3 * count].as_chunks::<3>().0.to_vec();
+        first += 3 * count;
+        for node in 0..count as u32 {
+            let Some(ends) = body.ends_of(node) else { continue };
+            let tied = std::mem::take(&mut own[node as usize]);
+            ends.iter().for_each(|&end| (0..3).for_each(|axis| own[end as usize][axis] += 0.5 * tied[axis]));
+        }
+        let mut copies = vec![0.0; count];
+        let nodes = body.pieces.iter().flat_map(|piece| &piece.nodes);
+        nodes.for_each(|&node| copies[node as usize] += 1.0);
+        for (index, subdomain) in model.subdomains.iter().enumerate().filter(|(_, own)| own.body == number) {
+            let start = model.starts[index];
+            for (local, &node) in body.pieces[subdomain.piece].nodes.iter().enumerate() {
+                for axis in 0..3 {
+                    torn.0[start + 3 * local + axis] = own[node as usize][axis] / copies[node as usize];
+                }
             }
         }
     }
     torn
 }
 
-fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &[f64]) -> SolvedBody {
-    let (grid, size) = (&block.grid, model.pattern.pattern.dimension());
+fn whole_body(model: &TornModel, number: usize, positions: &Positions, torn: &[f64]) -> SolvedBody {
+    let (body, numbering) = (&model.problem.bodies[number], &model.numbering);
     let copies = || {
-        model.numbering.of_body(body).flat_map(|(number, place)| {
-            let displacements = torn[size * number..][..size].as_chunks::<3>().0.iter().copied();
-            (0..place.node_count()).map(|local| grid.node(place.block_position(local))).zip(displacements)
+        body.pieces.iter().enumerate().flat_map(|(piece, own)| {
+            let first = numbering.starts()[numbering.number(number, piece)];
+            let displacements = torn[first..][..own.dof_count()].as_chunks::<3>().0.iter().copied();
+            own.nodes.iter().map(|&node| node as usize).zip(displacements)
         })
     };
+    let count = body.mesh.node_count();
     // Per node: the sum over its copies, and their number.
-    let mut sums = vec![0.0; 4 * grid.node_count()];
+    let mut sums = vec![0.0; 4 * count];
     for (node, copy) in copies() {
         for (sum, value) in sums[4 * node..].iter_mut().zip(copy.into_iter().chain([1.0])) {
             *sum += value;
         }
     }
-    let displacement: Vec<[f64; 3]> =
-        sums.chunks_exact(4).map(|sum| std::array::from_fn(|component| sum[component] / sum[3])).collect();
-    let mut spread = vec![0.0; grid.node_count()];
+    let mut displacement: Vec<[f64; 3]> =
+        sums.chunks_exact(4).map(|sum| std::array::from_fn(|component| sum[component] / sum[3].max(1.0))).collect();
+    for node in 0..count as u32 {
+        if let Some([a, b]) = body.ends_of(node) {
+            let (a, b) = (displacement[a as usize], displacement[b as usize]);
+            displacement[node as usize] = std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]));
+        }
+    }
+    let mut spread = vec![0.0; count];
     for (node, copy) in copies() {
         spread[node] += copy.iter().zip(displacement[node]).map(|(copy, mean)| (copy - mean).powi(2)).sum::<f64>();
     }
-    let mut subdomains = vec![0; grid.brick_count()];
-    let before = body * model.numbering.count() / model.numbering.body_count();
-    for (index, (_, place)) in model.numbering.of_body(body).enumerate() {
-        for brick in lattice::points(place.first_cell, place.cells) {
-            subdomains[grid.brick(brick)] = before + index;
-        }
+    let before: usize = model.problem.bodies[..number].iter().map(|body| body.pieces.len()).sum();
+    let mut subdomains = vec![0; body.mesh.cell_count()];
+    for (piece, own) in body.pieces.iter().enumerate() {
+        own.cells.iter().for_each(|&cell| subdomains[cell as usize] = before + piece);
     }
     SolvedBody {
-        block: block.clone(),
+        mesh: Arc::clone(&body.mesh),
+        positions: Arc::clone(&positions[number]),
         displacement,
         gluing_defect: spread.into_iter().fold(0.0, f64::max).sqrt(),
         subdomains,

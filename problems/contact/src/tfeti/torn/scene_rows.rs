@@ -1,49 +1,48 @@
-//! The rows of B, one after the other: what glues, what supports, and what meets the obstacle.
+//! The rows of B, one after the other: what glues, what supports, and what meets the counter surface.
 
-use crate::body::mesh::{Grid, Tearing};
-use crate::equilibrium::ContactBoundary;
-use crate::lattice;
-use crate::scene::{BodyScene, Scene};
+use crate::body::Body;
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, Side};
+use crate::tfeti::torn::joints::Joints;
+use crate::tfeti::torn::numbering::Numbering;
+use std::collections::HashMap;
 use std::ops::Range;
-
-/// What the rows need to know of one body.
-pub struct BodyRows<'a> {
-    pub grid: &'a Grid,
-    pub tearing: &'a Tearing,
-    pub scene: &'a BodyScene,
-    /// First torn dof of every subdomain of the tearing, of all processes.
-    pub offsets: Vec<usize>,
-    /// Dofs of a cluster.
-    pub cluster_size: usize,
-}
-
-impl BodyRows<'_> {
-    /// Torn dofs of the copies of a block node, first component.
-    fn copies(&self, position: [usize; 3]) -> Vec<usize> {
-        let copies = self.tearing.copies(position);
-        copies.into_iter().map(|(subdomain, node)| self.offsets[subdomain] + 3 * node).collect()
-    }
-
-    /// The cluster that a node joins by rows of B_c, given its copies.
-    fn joined(&self, position: [usize; 3], copies: &[usize]) -> Option<usize> {
-        let cluster = copies[0] / self.cluster_size;
-        let inside = copies.len() > 1 && copies.iter().all(|copy| copy / self.cluster_size == cluster);
-        (inside && self.is_near_a_corner(position)).then_some(cluster)
-    }
-
-    /// Whether a node lies at a corner between subdomains, next to the end of an edge, or next to the corner of a face:
-    /// few nodes, as far apart on a face as inner nodes can be, so that neighbours hardly turn against each other.
-    fn is_near_a_corner(&self, position: [usize; 3]) -> bool {
-        let cells = self.tearing.subdomains[0].cells;
-        (0..3).all(|axis| {
-            let along = position[axis] % cells[axis];
-            along <= 1 || along + 1 == cells[axis]
-        })
-    }
-}
 
 /// Entries (torn dof, value) of one row.
 pub type SparseRow = Vec<(usize, f64)>;
+
+/// First torn dofs of the copies of every node of a body, by ascending subdomain.
+#[derive(Debug)]
+pub struct Copies {
+    starts: Vec<u32>,
+    dofs: Vec<usize>,
+}
+
+impl Copies {
+    /// The copies of the nodes of a body.
+    pub fn new(number: usize, body: &Body, numbering: &Numbering) -> Self {
+        let mut pieces: Vec<(usize, usize)> =
+            (0..body.pieces.len()).map(|piece| (numbering.number(number, piece), piece)).collect();
+        pieces.sort_unstable();
+        let mut starts = vec![0_u32; body.mesh.node_count() + 1];
+        let nodes = || pieces.iter().flat_map(|&(_, piece)| body.pieces[piece].nodes.iter());
+        nodes().for_each(|&node| starts[node as usize + 1] += 1);
+        (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
+        let (mut next, mut dofs) = (starts.clone(), vec![0; starts[starts.len() - 1] as usize]);
+        for &(subdomain, piece) in &pieces {
+            for (local, &node) in body.pieces[piece].nodes.iter().enumerate() {
+                dofs[next[node as usize] as usize] = numbering.starts()[subdomain] + 3 * local;
+                next[node as usize] += 1;
+            }
+        }
+        Self { starts, dofs }
+    }
+
+    /// First torn dofs of the copies of a node; none of a tied one.
+    pub fn of(&self, node: u32) -> &[usize] {
+        let node = node as usize;
+        &self.dofs[self.starts[node] as usize..self.starts[node + 1] as usize]
+    }
+}
 
 /// A row of B_E.
 pub struct EqualityRow {
@@ -54,7 +53,7 @@ pub struct EqualityRow {
     pub entries: SparseRow,
 }
 
-/// The rows of a scene that concern a process, before their dofs are numbered.
+/// The rows of B_E that concern a process, before their dofs are numbered.
 pub struct SceneRows {
     /// Rows of B_E that touch its subdomains, by ascending owner.
     pub equality: Vec<EqualityRow>,
@@ -63,116 +62,191 @@ pub struct SceneRows {
     /// Number of rows of B_E of every subdomain.
     pub counts: Vec<usize>,
     pub gluing_count: usize,
-    /// All contact rows of B and B_D.
-    pub contact: Vec<[SparseRow; 2]>,
-    /// ν of every contact node.
-    pub normalisation: Vec<f64>,
 }
 
 impl SceneRows {
-    /// The rows of B_E that touch a subdomain of `own`, and all contact rows; `count` subdomains of `size` dofs each.
-    pub fn new(
-        scene: &Scene,
-        bodies: &[BodyRows<'_>],
-        boundary: &ContactBoundary,
-        own: &Range<usize>,
-        [count, size]: [usize; 2],
-    ) -> Self {
-        let (mut equality, mut counts, mut gluing_count) = (Vec::new(), vec![0; count], 0);
-        let clusters = own.start * size / bodies[0].cluster_size..own.end * size / bodies[0].cluster_size;
-        let mut joined = vec![Vec::new(); clusters.len()];
-        for body in bodies {
-            gluing_count += equality_rows(body, |cluster: Option<usize>, entries: SparseRow| {
+    /// The rows of B_E that touch a subdomain of `own`.
+    pub fn new(bodies: &[Body], copies: &[Copies], numbering: &Numbering, own: &Range<usize>, joints: &Joints) -> Self {
+        let (mut equality, mut counts, mut gluing_count) = (Vec::new(), vec![0; numbering.count()], 0);
+        let own_clusters = match own.is_empty() {
+            true => 0..0,
+            false => numbering.cluster_of(own.start)..numbering.cluster_of(own.end - 1) + 1,
+        };
+        let mut joined = vec![Vec::new(); own_clusters.len()];
+        for (number, (body, copies)) in bodies.iter().zip(copies).enumerate() {
+            let mut visit = |cluster: Option<usize>, entries: SparseRow| {
                 if let Some(cluster) = cluster {
-                    if clusters.contains(&cluster) {
-                        joined[cluster - clusters.start].push(entries);
+                    if own_clusters.contains(&cluster) {
+                        joined[cluster - own_clusters.start].push(entries);
                     }
                     return;
                 }
-                let owner = first_subdomain(&entries, size);
-                if entries.iter().any(|(dof, _)| own.contains(&(dof / size))) {
+                let owner = first_subdomain(&entries, numbering);
+                if entries.iter().any(|(dof, _)| own.contains(&numbering.owner(*dof))) {
                     equality.push(EqualityRow { owner, index: counts[owner], entries });
                 }
                 counts[owner] += 1;
-            });
+            };
+            for node in 0..body.mesh.node_count() as u32 {
+                let joint = joints.cluster_of(number, node);
+                gluing_count += node_rows(body, node, copies.of(node), joint, &mut visit);
+            }
         }
         equality.sort_by_key(|row| row.owner);
-        let (mut contact, mut normalisation) = (Vec::new(), Vec::with_capacity(boundary.points.len()));
-        for point in &boundary.points {
-            let mut scale = None;
-            for component in std::iter::once(2).chain(point.tangents.iter().copied()) {
-                let parts = contact_parts(scene, bodies, point.position, component);
-                let squared: f64 = parts.iter().map(|part| 1.0 / part.copies.len() as f64).sum();
-                let nu = *scale.get_or_insert(squared.sqrt());
-                contact.push(contact_row(&parts, nu));
-            }
-            normalisation.push(scale.unwrap_or(1.0));
-        }
-        Self { equality, joined, counts, gluing_count, contact, normalisation }
+        Self { equality, joined, counts, gluing_count }
     }
 }
 
 /// The first subdomain that a row touches.
-pub fn first_subdomain(row: &SparseRow, size: usize) -> usize {
-    row.iter().map(|(dof, _)| dof / size).min().unwrap_or(0)
+pub fn first_subdomain(row: &SparseRow, numbering: &Numbering) -> usize {
+    row.iter().map(|(dof, _)| *dof).min().map_or(0, |dof| numbering.owner(dof))
 }
 
-/// Visits the rows of supports and gluing of one body, with the cluster whose row of B_c they are; returns the number
-/// of gluing rows of B_E.
-fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Option<usize>, SparseRow)) -> usize {
-    let mut gluing_count = 0;
-    for node in lattice::points([0; 3], body.grid.nodes()) {
-        let copies = body.copies(node);
-        let joined = body.joined(node, &copies);
-        for (component, held) in body.scene.held(body.grid, node).into_iter().enumerate() {
-            if held {
-                copies.iter().for_each(|first| visit(None, vec![(first + component, 1.0)]));
-                continue;
-            }
-            for last in 1..copies.len() {
-                let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
-                let mut row: SparseRow = copies[..last].iter().map(|first| (first + component, scale)).collect();
-                row.push((copies[last] + component, -(last as f64) * scale));
-                visit(joined, row);
-                gluing_count += usize::from(joined.is_none());
-            }
+/// A row along a direction at one copy, times a factor.
+fn along(first: usize, direction: &[f64; 3], factor: f64) -> impl Iterator<Item = (usize, f64)> {
+    let entries = direction.map(|d| factor * d);
+    (0..3).map(move |axis| (first + axis, entries[axis])).filter(|(_, entry)| *entry != 0.0)
+}
+
+/// Visits the rows of supports and gluing of one node, with the cluster whose row of B_c they are; returns the number of
+/// gluing rows of B_E.
+fn node_rows(
+    body: &Body,
+    node: u32,
+    copies: &[usize],
+    joined: Option<usize>,
+    visit: &mut impl FnMut(Option<usize>, SparseRow),
+) -> usize {
+    for direction in body.held(node) {
+        copies.iter().for_each(|&first| visit(None, along(first, direction, 1.0).collect()));
+    }
+    if copies.len() < 2 {
+        return 0;
+    }
+    let free = body.free(node);
+    for direction in &free {
+        for last in 1..copies.len() {
+            let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
+            let row = copies[..last].iter().flat_map(|&first| along(first, direction, scale));
+            visit(joined, row.chain(along(copies[last], direction, -(last as f64) * scale)).collect());
         }
     }
-    gluing_count
+    if joined.is_none() { free.len() * (copies.len() - 1) } else { 0 }
 }
 
-/// The copies of one body in a contact row.
+/// The nodes of a contact node with their copies, shares and free directions: what its rows are made of at any shape.
+#[derive(Debug)]
+pub struct ContactNode {
+    /// ν: all rows of the node are divided by it.
+    pub normalisation: f64,
+    parts: Vec<ContactPart>,
+}
+
+#[derive(Debug)]
 struct ContactPart {
-    sign: f64,
+    weight: f64,
     copies: Vec<usize>,
     compliance: f64,
+    free: Vec<[f64; 3]>,
 }
 
-/// The bodies whose dof `component` is free at a contact node.
-fn contact_parts(scene: &Scene, bodies: &[BodyRows<'_>], [i, j]: [usize; 2], component: usize) -> Vec<ContactPart> {
-    let mut parts = Vec::with_capacity(2);
-    for (index, body) in bodies.iter().enumerate() {
-        let (layer, sign) = if index == 0 { (scene.mesh[2], 1.0) } else { (0, -1.0) };
-        let position = [i, j, layer];
-        if !body.scene.held(body.grid, position)[component] {
-            let copies = body.copies(position).into_iter().map(|first| first + component).collect();
-            parts.push(ContactPart { sign, copies, compliance: 1.0 / body.scene.material.young_modulus() });
-        }
+impl ContactNode {
+    pub fn new(point: &ContactPoint, bodies: &[Body], copies: &[Copies], cell_of: &[HashMap<u32, u32>]) -> Self {
+        let part = |side: &Side| {
+            let (body, cell) = (&bodies[side.body], cell_of[side.body].get(&side.node).copied().unwrap_or(0));
+            let compliance = 1.0 / body.material(cell as usize).young_modulus();
+            let copies = copies[side.body].of(side.node).to_vec();
+            ContactPart { weight: side.weight, copies, compliance, free: body.free(side.node) }
+        };
+        let parts: Vec<ContactPart> = point.sides.iter().map(part).filter(|part| !part.free.is_empty()).collect();
+        let squared: f64 = parts.iter().map(|part| part.weight * part.weight / part.copies.len() as f64).sum();
+        Self { normalisation: squared.sqrt(), parts }
     }
-    parts
+
+    /// A row of B and of B_D for a direction.
+    pub fn row(&self, direction: &[f64; 3]) -> [SparseRow; 2] {
+        let nu = self.normalisation;
+        // Entries w d/(mν); weights ω w d/(mν) with Σ ω w²|d|²/(mν²) = 1 and ω proportional to the body's compliance.
+        let own = |part: &ContactPart| projected(&part.free, direction);
+        let total: f64 = self
+            .parts
+            .iter()
+            .map(|part| part.compliance * part.weight.powi(2) * square(own(part)) / (part.copies.len() as f64 * nu * nu))
+            .sum();
+        let (mut row, mut weights) = (Vec::new(), Vec::new());
+        for part in &self.parts {
+            let factor = part.weight / (part.copies.len() as f64 * nu);
+            for &first in &part.copies {
+                row.extend(along(first, &own(part), factor));
+                weights.extend(along(first, &own(part), factor * part.compliance / total));
+            }
+        }
+        [row, weights]
+    }
+
+    /// Torn dofs along an axis with their shares in the displacement of the node less that of its partners.
+    pub fn shares(&self, axis: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.parts.iter().flat_map(move |part| {
+            let share = part.weight / part.copies.len() as f64;
+            part.copies.iter().map(move |&first| (first + axis, share))
+        })
+    }
+
+    /// All torn dofs that rows along some directions may have entries at: of a row along an axis, that axis alone.
+    pub fn dofs(&self, directions: &[[f64; 3]]) -> Vec<usize> {
+        let of_part = |part: &ContactPart| {
+            let axes = (0..3).filter(|&axis| directions.iter().any(|d| projected(&part.free, d)[axis] != 0.0));
+            let axes: Vec<usize> = axes.collect();
+            part.copies.iter().flat_map(|&first| axes.iter().map(move |axis| first + axis)).collect::<Vec<_>>()
+        };
+        self.parts.iter().flat_map(of_part).collect()
+    }
 }
 
-/// A row of B and of B_D.
-fn contact_row(parts: &[ContactPart], nu: f64) -> [SparseRow; 2] {
-    // SparseRow entries s/(mν); weights ω s/(mν) with Σ ω/(mν²) = 1 and ω proportional to the body's compliance.
-    let total: f64 = parts.iter().map(|part| part.compliance / (part.copies.len() as f64 * nu * nu)).sum();
-    let (mut row, mut weights) = (Vec::new(), Vec::new());
-    for part in parts {
-        let entry = part.sign / (part.copies.len() as f64 * nu);
-        for &dof in &part.copies {
-            row.push((dof, entry));
-            weights.push((dof, entry * part.compliance / total));
+/// Directions that the rows of a node may take at any shape: those of given rows where they are fixed, else all free
+/// ones.
+pub fn possible_directions(point: &ContactPoint, rows: &[[f64; 3]], are_fixed: bool) -> Vec<[f64; 3]> {
+    if are_fixed { rows.to_vec() } else { point.free.clone() }
+}
+
+fn projected(free: &[[f64; 3]], direction: &[f64; 3]) -> [f64; 3] {
+    if free.len() == 3 {
+        return *direction;
+    }
+    let mut sum = [0.0; 3];
+    for own in free {
+        let share: f64 = (0..3).map(|axis| own[axis] * direction[axis]).sum();
+        (0..3).for_each(|axis| sum[axis] += share * own[axis]);
+    }
+    sum
+}
+
+fn square(a: [f64; 3]) -> f64 {
+    a.iter().map(|x| x * x).sum()
+}
+
+/// A cell of every contact node of every body: its material weighs the rows of the node.
+pub fn contact_cells(boundary: &ContactBoundary, bodies: &[Body]) -> Vec<HashMap<u32, u32>> {
+    let mut cells = vec![HashMap::new(); bodies.len()];
+    for side in boundary.points.iter().flat_map(|point| &point.sides) {
+        cells[side.body].insert(side.node, u32::MAX);
+    }
+    for (body, cells) in bodies.iter().zip(&mut cells) {
+        for (number, cell) in body.mesh.cells().enumerate() {
+            for node in cell.nodes {
+                if let Some(found) = cells.get_mut(node).filter(|found| **found == u32::MAX) {
+                    *found = number as u32;
+                }
+            }
         }
     }
-    [row, weights]
+    cells
+}
+
+/// The contact rows of B and B_D of a shape.
+pub fn contact_rows(nodes: &[ContactNode], rows: &ContactRows) -> Vec<[SparseRow; 2]> {
+    let of_node = |(node, rows): (&ContactNode, &crate::equilibrium::NodeRows)| {
+        rows.directions.iter().map(|direction| node.row(direction)).collect::<Vec<_>>()
+    };
+    nodes.iter().zip(&rows.nodes).flat_map(of_node).collect()
 }

@@ -5,17 +5,26 @@ use crate::linear::entry::Entry;
 use crate::linear::right_side::RightSide;
 use crate::tfeti::torn::cluster_factors::ClusterFactors;
 use crate::tfeti::torn::cluster_rows::ClusterRows;
+use crate::tfeti::torn::constraints::TornRows;
 use crate::tfeti::torn::factors::SubdomainFactors;
+use crate::tfeti::torn::vectors::parts_mut;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
-/// The factored subdomains of one shape.
+/// The factored subdomains of one shape, with the rows of B.
 #[derive(Debug)]
 pub struct TornSystem {
     /// The subdomains of this process, in their order.
     pub parts: Vec<Arc<SubdomainFactors>>,
+    /// First dof of every subdomain of this process in its torn vectors, then their number.
+    pub starts: Arc<[usize]>,
+    /// B and B_D.
+    pub rows: Arc<TornRows>,
     /// What joins the clusters of this process; none where every subdomain is a cluster.
     pub(super) clusters: Vec<Arc<ClusterFactors>>,
+    /// First subdomain of every cluster of this process, then their number.
+    pub(super) cluster_starts: Arc<[usize]>,
     /// Numeric factorisations done for this shape, by all processes.
     pub factorizations: usize,
     /// Largest [`SubdomainFactors::forward_error`] of all subdomains.
@@ -28,20 +37,27 @@ impl TornSystem {
         !self.clusters.is_empty()
     }
 
-    /// The cluster of a subdomain of this process, and its place in it; none where it is a cluster of its own.
-    fn cluster_of(&self, index: usize) -> Option<(&ClusterFactors, usize)> {
-        let members = self.parts.len().checked_div(self.clusters.len())?;
-        Some((&self.clusters[index / members], index % members))
+    /// The cluster of a subdomain of this process: its number, and the place of the subdomain in it; none where it is a
+    /// cluster of its own.
+    fn cluster_of(&self, index: usize) -> Option<(usize, usize)> {
+        let cluster = self.cluster_starts.partition_point(|&start| start <= index) - 1;
+        self.is_joined().then(|| (cluster, index - self.cluster_starts[cluster]))
+    }
+
+    /// The torn dofs of a subdomain of this process.
+    pub(crate) fn dofs(&self, index: usize) -> Range<usize> {
+        self.starts[index]..self.starts[index + 1]
     }
 
     /// One of the six orthonormal motions of the cluster of a dof, at a dof of this process.
     pub(crate) fn motion(&self, dof: usize, motion: usize) -> f64 {
-        let (index, local) = (dof / self.size(), dof % self.size());
+        let index = self.starts.partition_point(|&start| start <= dof) - 1;
+        let local = dof - self.starts[index];
         let modes = &self.parts[index].modes;
         match self.cluster_of(index) {
             None => modes[motion][local],
             Some((cluster, place)) => {
-                let amplitudes = cluster.motion_of(place, motion);
+                let amplitudes = self.clusters[cluster].motion_of(place, motion);
                 modes.iter().zip(amplitudes).map(|(mode, amplitude)| mode[local] * amplitude).sum()
             }
         }
@@ -52,21 +68,20 @@ impl TornSystem {
         let of = |number: usize| &clusters[MOTIONS * number..MOTIONS * (number + 1)];
         match self.cluster_of(index) {
             None => std::array::from_fn(|mode| of(index)[mode]),
-            Some((cluster, place)) => cluster.amplitudes_of(place, of(index * self.clusters.len() / self.parts.len())),
+            Some((cluster, place)) => self.clusters[cluster].amplitudes_of(place, of(cluster)),
         }
     }
 
     /// Resultants along the motions of the clusters of this process, from those along the modes of its subdomains.
-    pub(crate) fn cluster_resultants<V: Entry>(&self, own: Vec<V>) -> Vec<V> {
+    pub(crate) fn cluster_resultants<V: Entry>(&self, own_resultants: Vec<V>) -> Vec<V> {
         if !self.is_joined() {
-            return own;
+            return own_resultants;
         }
         let mut resultants = vec![V::ZERO; MOTIONS * self.clusters.len()];
-        let members = self.parts.len() / self.clusters.len();
-        let clusters = self.clusters.iter().zip(own.chunks_exact(MOTIONS * members));
-        for ((cluster, own), sums) in clusters.zip(resultants.chunks_exact_mut(MOTIONS)) {
-            for (place, own) in own.chunks_exact(MOTIONS).enumerate() {
-                cluster.add_resultants(place, own, sums);
+        let own = |cluster: usize| MOTIONS * self.cluster_starts[cluster]..MOTIONS * self.cluster_starts[cluster + 1];
+        for (cluster, sums) in resultants.chunks_exact_mut(MOTIONS).enumerate() {
+            for (place, own) in own_resultants[own(cluster)].chunks_exact(MOTIONS).enumerate() {
+                self.clusters[cluster].add_resultants(place, own, sums);
             }
         }
         resultants
@@ -77,126 +92,18 @@ impl TornSystem {
         if !self.is_joined() {
             return;
         }
-        let (size, members) = (self.size(), self.parts.len() / self.clusters.len());
-        let free = torn.par_chunks(size * members).zip(resultants.par_chunks(members));
-        let reactions: Vec<Vec<V>> = self
-            .clusters
-            .par_iter()
-            .zip(rows)
-            .zip(free)
-            .map(|((cluster, rows), (free, resultants))| cluster.reactions(rows, free, resultants))
-            .collect();
-        torn.par_chunks_mut(size).zip(&self.parts).enumerate().for_each(|(index, (x, part))| {
-            let (number, place) = (index / members, index % members);
-            self.clusters[number].join(&rows[number], place, part, &reactions[number], x);
-        });
-    }
-
-    /// Dofs of a subdomain.
-    fn size(&self) -> usize {
-        self.parts[0].modes[0].len()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::equilibrium::ContactProblem;
-    use crate::linear::vector::{add_scaled, norm};
-    use crate::scene::{Scene, signorini};
-    use crate::tfeti::torn::{TornModel, TornOptions};
-
-    /// Bodies in clusters of 2 × 2 × 1 subdomains, and their system.
-    fn joined() -> (TornModel, TornSystem) {
-        let scene = Scene { mesh: [12, 6, 6], subdomains: [4, 2, 2], ..signorini().expect("a preset") };
-        let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
-        let options = TornOptions { clusters: [2, 2, 1], ..TornOptions::default() };
-        let model = TornModel::new(Arc::clone(&problem), options).expect("a torn scene");
-        let heights: Vec<f64> = (0..36).map(|index| 95.0 + (0.7 * f64::from(index)).sin()).collect();
-        let system = model.factorize(&problem.blocks(&heights).expect("blocks")).expect("factors");
-        (model, system)
-    }
-
-    /// x ← (I − B_cᵀ B_c) x and |B_c x| before.
-    fn hold_together(model: &TornModel, x: &mut [f64]) -> f64 {
-        let size = model.pattern.pattern.dimension() * model.numbering.members();
-        let jumps = x.chunks_exact_mut(size).zip(&model.constraints.joined).map(|(x, rows)| {
-            let mut jumps = vec![0.0; rows.count];
-            let first = |member: usize| member * size / rows.members.len();
-            for (member, part) in rows.members.iter().enumerate() {
-                part.entries.iter().for_each(|&(row, place, v)| jumps[row] += v * x[first(member) + part.dofs[place]]);
-            }
-            for (member, part) in rows.members.iter().enumerate() {
-                part.entries.iter().for_each(|&(row, place, v)| x[first(member) + part.dofs[place]] -= v * jumps[row]);
-            }
-            norm(&jumps)
-        });
-        jumps.fold(0.0, f64::max)
-    }
-
-    /// The forces K x.
-    fn forces(model: &TornModel, system: &TornSystem, x: &[f64]) -> Vec<f64> {
-        let size = model.pattern.pattern.dimension();
-        let mut forces = vec![0.0; x.len()];
-        for ((part, x), forces) in system.parts.iter().zip(x.chunks_exact(size)).zip(forces.chunks_exact_mut(size)) {
-            model.pattern.pattern.multiply(&part.stiffness, x, forces);
-        }
-        forces
-    }
-
-    /// The displacements K̂⁺ f.
-    fn displacements(model: &TornModel, system: &TornSystem, forces: &[f64]) -> Vec<f64> {
-        let mut x = forces.to_vec();
-        let parts = x.chunks_exact_mut(model.pattern.pattern.dimension()).zip(&system.parts);
-        let resultants: Vec<[f64; MOTIONS]> = parts
-            .map(|(x, part)| {
-                let resultants = part.resultants_of(x);
-                part.solve(x);
-                resultants
+        let reactions: Vec<Vec<V>> = (0..self.clusters.len())
+            .into_par_iter()
+            .map(|cluster| {
+                let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
+                let free: Vec<&[V]> = members.clone().map(|index| &torn[self.dofs(index)]).collect();
+                self.clusters[cluster].reactions(&rows[cluster], &free, &resultants[members])
             })
             .collect();
-        system.join(&model.constraints.joined, &resultants, &mut x);
-        x
-    }
-
-    #[test]
-    fn the_inverse_of_a_cluster_is_a_generalised_one() {
-        let (model, system) = joined();
-        let mut probe: Vec<f64> = (0..model.total_dofs).map(|index| (0.37 * index as f64).sin()).collect();
-        assert!(hold_together(&model, &mut probe) > 1.0);
-        // Forces of a joined cluster, with any reactions between its subdomains.
-        let expected = forces(&model, &system, &probe);
-        let mut loads = expected.clone();
-        hold_together(&model, &mut loads);
-        let mut found = displacements(&model, &system, &loads);
-        let mut rest = forces(&model, &system, &found);
-        let jumps = hold_together(&model, &mut found);
-        assert!(jumps < 1e-11 * norm(&probe), "{jumps:.1e}");
-        add_scaled(&mut rest, -1.0, &expected);
-        hold_together(&model, &mut rest);
-        assert!(norm(&rest) < 1e-11 * norm(&expected), "{:.1e}", norm(&rest) / norm(&expected));
-    }
-
-    #[test]
-    fn a_cluster_has_six_orthonormal_motions_without_strain_or_jumps() {
-        let (model, system) = joined();
-        let size = model.pattern.pattern.dimension() * model.numbering.members();
-        let scale = system.parts[0].stiffness.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
-        for cluster in 0..model.numbering.cluster_count() {
-            let motion = |number: usize| -> Vec<f64> {
-                let mut all = vec![0.0; model.total_dofs];
-                (cluster * size..(cluster + 1) * size).for_each(|dof| all[dof] = system.motion(dof, number));
-                all
-            };
-            let motions: Vec<Vec<f64>> = (0..MOTIONS).map(motion).collect();
-            for (number, motion) in motions.iter().enumerate() {
-                for (other, second) in motions.iter().enumerate() {
-                    let product: f64 = motion.iter().zip(second).map(|(a, b)| a * b).sum();
-                    assert!((product - f64::from(u8::from(number == other))).abs() < 1e-12);
-                }
-                assert!(norm(&forces(&model, &system, motion)) < 1e-11 * scale);
-                assert!(hold_together(&model, &mut motion.clone()) < 1e-12);
+        parts_mut(torn, &self.starts).into_par_iter().zip(&self.parts).enumerate().for_each(|(index, (x, part))| {
+            if let Some((cluster, place)) = self.cluster_of(index) {
+                self.clusters[cluster].join(&rows[cluster], place, part, &reactions[cluster], x);
             }
-        }
+        });
     }
 }

@@ -14,6 +14,17 @@ pub struct RowVector<V = f64> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TornVector(pub Vec<f64>);
 
+/// The parts of a vector between the starts of subdomains; what follows the last one is left out.
+pub fn parts_mut<'v, V>(mut values: &'v mut [V], starts: &[usize]) -> Vec<&'v mut [V]> {
+    let mut parts = Vec::with_capacity(starts.len() - 1);
+    for pair in starts.windows(2) {
+        let (part, rest) = values.split_at_mut(pair[1] - pair[0]);
+        parts.push(part);
+        values = rest;
+    }
+    parts
+}
+
 impl<V> RowVector<V> {
     pub(crate) fn new(values: Vec<V>, equality_count: usize) -> Self {
         Self { values, equality_count }

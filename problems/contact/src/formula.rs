@@ -1,14 +1,15 @@
-//! Formulas in x1 and x2 with the precedence of mathematics.
+//! Formulas in x1, x2 and x3 with the precedence of mathematics, for numbers with or without derivatives.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
 //! product = factor { ("*" | "/") factor }
 //! factor  = ("+" | "-") factor | power
 //! power   = operand [ "^" factor ]            2^3^2 = 2^(3^2),  -x1^2 = -(x1^2),  2^-1 = 0.5
-//! operand = number | "x1" | "x2" | "PI" | function "(" sum { "," sum } ")" | "(" sum ")"
+//! operand = number | "x1" | "x2" | "x3" | "PI" | function "(" sum { "," sum } ")" | "(" sum ")"
 //! ```
 
-use contact::error::SceneError;
+use crate::error::SceneError;
+use crate::scalar::Scalar;
 use std::f64::consts::PI;
 
 /// Longest formula, characters.
@@ -16,43 +17,39 @@ const LONGEST: usize = 1000;
 /// Most parentheses, signs and powers inside each other.
 const DEEPEST: usize = 100;
 
-/// A function by its number of arguments.
+/// A function by its number of arguments, with its slope.
 #[derive(Debug, Clone, Copy)]
 enum Function {
-    One(fn(f64) -> f64),
-    Two(fn(f64, f64) -> f64),
+    One(fn(f64) -> f64, fn(f64) -> f64),
+    /// Of two numbers one, by a comparison that chooses the first.
+    Chosen(fn(f64, f64) -> bool),
 }
-use Function::{One, Two};
+use Function::{Chosen, One};
 
 /// The functions by their names.
 const FUNCTIONS: [(&str, Function); 19] = [
-    ("abs", One(f64::abs)),
-    ("sqrt", One(f64::sqrt)),
-    ("exp", One(f64::exp)),
-    ("ln", One(f64::ln)),
-    ("log10", One(f64::log10)),
-    ("sin", One(f64::sin)),
-    ("cos", One(f64::cos)),
-    ("tan", One(f64::tan)),
-    ("asin", One(f64::asin)),
-    ("acos", One(f64::acos)),
-    ("atan", One(f64::atan)),
-    ("sinh", One(f64::sinh)),
-    ("cosh", One(f64::cosh)),
-    ("tanh", One(f64::tanh)),
-    ("floor", One(f64::floor)),
-    ("ceil", One(f64::ceil)),
-    ("round", One(f64::round)),
-    ("max", Two(|a, b| chosen(a, b, a >= b))),
-    ("min", Two(|a, b| chosen(a, b, a <= b))),
+    ("abs", One(f64::abs, f64::signum)),
+    ("sqrt", One(f64::sqrt, |x| 0.5 / x.sqrt())),
+    ("exp", One(f64::exp, f64::exp)),
+    ("ln", One(f64::ln, f64::recip)),
+    ("log10", One(f64::log10, |x| 1.0 / (x * std::f64::consts::LN_10))),
+    ("sin", One(f64::sin, f64::cos)),
+    ("cos", One(f64::cos, |x| -x.sin())),
+    ("tan", One(f64::tan, |x| 1.0 + x.tan().powi(2))),
+    ("asin", One(f64::asin, |x| 1.0 / (1.0 - x * x).sqrt())),
+    ("acos", One(f64::acos, |x| -1.0 / (1.0 - x * x).sqrt())),
+    ("atan", One(f64::atan, |x| 1.0 / (1.0 + x * x))),
+    ("sinh", One(f64::sinh, f64::cosh)),
+    ("cosh", One(f64::cosh, f64::sinh)),
+    ("tanh", One(f64::tanh, |x| 1.0 - x.tanh().powi(2))),
+    ("floor", One(f64::floor, |_| 0.0)),
+    ("ceil", One(f64::ceil, |_| 0.0)),
+    ("round", One(f64::round, |_| 0.0)),
+    ("max", Chosen(|a, b| a >= b)),
+    ("min", Chosen(|a, b| a <= b)),
 ];
 
-/// One of two numbers; none of them where one is not a number.
-fn chosen(a: f64, b: f64, first: bool) -> f64 {
-    if a.is_nan() || first { a } else { b }
-}
-
-/// A formula in x1 and x2.
+/// A formula in x1, x2 and x3.
 #[derive(Debug, Clone)]
 pub struct Formula {
     /// What is done to a stack of numbers, in order.
@@ -64,8 +61,14 @@ enum Step {
     Number(f64),
     /// The coordinate of this index.
     Coordinate(usize),
-    One(fn(f64) -> f64),
-    Two(fn(f64, f64) -> f64),
+    One(fn(f64) -> f64, fn(f64) -> f64),
+    Chosen(fn(f64, f64) -> bool),
+    Negative,
+    Sum,
+    Difference,
+    Product,
+    Quotient,
+    Power,
 }
 
 impl Formula {
@@ -73,12 +76,13 @@ impl Formula {
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] with the first place that cannot be understood.
-    pub fn parse(field: &'static str, text: &str) -> Result<Self, SceneError> {
+    pub fn parse(field: &str, text: &str) -> Result<Self, SceneError> {
         let characters: Vec<char> = text.chars().collect();
         if characters.len() > LONGEST {
             let found = format!("a formula of {} characters", characters.len());
             return Err(SceneError::out_of_range(field, found, format!("at most {LONGEST} characters")));
         }
+        let field = field.to_owned();
         let mut parser = Parser { field, characters, at: 0, steps: Vec::new(), depth: 0 };
         parser.sum()?;
         if parser.peek().is_some() {
@@ -88,27 +92,45 @@ impl Formula {
     }
 
     /// Its value at a place; not a number where it has none.
-    pub fn value(&self, place: [f64; 2]) -> f64 {
+    pub fn value<T: Scalar>(&self, place: [T; 3]) -> T {
         let mut stack = Vec::new();
         for step in &self.steps {
+            let mut pop = || stack.pop().unwrap_or(T::constant(f64::NAN));
             let value = match *step {
-                Step::Number(number) => number,
+                Step::Number(number) => T::constant(number),
                 Step::Coordinate(axis) => place[axis],
-                Step::One(function) => function(stack.pop().unwrap_or(f64::NAN)),
-                Step::Two(function) => {
-                    let second = stack.pop().unwrap_or(f64::NAN);
-                    function(stack.pop().unwrap_or(f64::NAN), second)
+                Step::One(function, slope) => pop().map(function, slope),
+                Step::Negative => T::constant(0.0) - pop(),
+                two => {
+                    let (second, first) = (pop(), pop());
+                    two.of(first, second)
                 }
             };
             stack.push(value);
         }
-        stack.pop().unwrap_or(f64::NAN)
+        stack.pop().unwrap_or(T::constant(f64::NAN))
+    }
+}
+
+impl Step {
+    /// An operation on two numbers.
+    fn of<T: Scalar>(self, a: T, b: T) -> T {
+        match self {
+            Self::Sum => a + b,
+            Self::Difference => a - b,
+            Self::Product => a * b,
+            Self::Quotient => a / b,
+            Self::Power => a.power(b),
+            // Neither of them where one is not a number.
+            Self::Chosen(first) if a.value().is_nan() || first(a.value(), b.value()) => a,
+            _ => b,
+        }
     }
 }
 
 /// A text that is being read.
 struct Parser {
-    field: &'static str,
+    field: String,
     characters: Vec<char>,
     at: usize,
     steps: Vec<Step>,
@@ -121,7 +143,7 @@ impl Parser {
         while let Some(sign @ ('+' | '-')) = self.peek() {
             self.at += 1;
             self.product()?;
-            self.steps.push(Step::Two(if sign == '+' { |a, b| a + b } else { |a, b| a - b }));
+            self.steps.push(if sign == '+' { Step::Sum } else { Step::Difference });
         }
         Ok(())
     }
@@ -131,7 +153,7 @@ impl Parser {
         while let Some(sign @ ('*' | '/')) = self.peek() {
             self.at += 1;
             self.factor()?;
-            self.steps.push(Step::Two(if sign == '*' { |a, b| a * b } else { |a, b| a / b }));
+            self.steps.push(if sign == '*' { Step::Product } else { Step::Quotient });
         }
         Ok(())
     }
@@ -144,13 +166,13 @@ impl Parser {
         if let Some(sign @ ('+' | '-')) = self.peek() {
             self.at += 1;
             self.factor()?;
-            self.steps.extend((sign == '-').then_some(Step::One(|a| -a)));
+            self.steps.extend((sign == '-').then_some(Step::Negative));
         } else {
             self.operand()?;
             if self.peek() == Some('^') {
                 self.at += 1;
                 self.factor()?;
-                self.steps.push(Step::Two(f64::powf));
+                self.steps.push(Step::Power);
             }
         }
         self.depth -= 1;
@@ -158,7 +180,7 @@ impl Parser {
     }
 
     fn operand(&mut self) -> Result<(), SceneError> {
-        let expected = "a number, x1, x2, PI, a function or a parenthesis";
+        let expected = "a number, x1, x2, x3, PI, a function or a parenthesis";
         match self.peek() {
             Some('(') => {
                 self.at += 1;
@@ -211,11 +233,12 @@ impl Parser {
         match name.as_str() {
             "x1" => self.steps.push(Step::Coordinate(0)),
             "x2" => self.steps.push(Step::Coordinate(1)),
+            "x3" => self.steps.push(Step::Coordinate(2)),
             "PI" => self.steps.push(Step::Number(PI)),
             _ => {
                 let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
                     let names: Vec<&str> = FUNCTIONS.iter().map(|(name, _)| *name).collect();
-                    return Err(self.error(&format!("the names x1, x2, PI and the functions {}", names.join(", "))));
+                    return Err(self.error(&format!("the names x1, x2, x3, PI and the functions {}", names.join(", "))));
                 };
                 self.at += name.chars().count();
                 return self.call(&name, *function);
@@ -229,11 +252,11 @@ impl Parser {
         self.expect('(', &format!("a parenthesis after {name}, as in {name}(…)"))?;
         self.sum()?;
         let step = match function {
-            One(function) => Step::One(function),
-            Two(function) => {
+            One(function, slope) => Step::One(function, slope),
+            Chosen(first) => {
                 self.expect(',', &format!("a comma and a second argument of {name}"))?;
                 self.sum()?;
-                Step::Two(function)
+                Step::Chosen(first)
             }
         };
         self.steps.push(step);
@@ -271,7 +294,7 @@ impl Parser {
                 format!("{text:?} at character {}", self.at + 1)
             }
         };
-        SceneError::out_of_range(self.field, found, allowed)
+        SceneError::out_of_range(self.field.as_str(), found, allowed)
     }
 }
 
@@ -284,7 +307,7 @@ mod tests {
     }
 
     fn value(text: &str) -> f64 {
-        parse(text).unwrap_or_else(|error| panic!("{text}: {error}")).value([2.0, 3.0])
+        parse(text).unwrap_or_else(|error| panic!("{text}: {error}")).value([2.0, 3.0, 5.0])
     }
 
     #[test]
@@ -316,7 +339,7 @@ mod tests {
     #[test]
     fn everything_else_is_refused_with_its_place() {
         for (text, found, allowed) in [
-            ("", "the end", "a number, x1, x2"),
+            ("", "the end", "a number, x1, x2, x3"),
             ("sin x1", "\"x1\" at character 5", "a parenthesis after sin"),
             ("sin", "the end", "a parenthesis after sin"),
             ("2 x1", "\"x1\" at character 3", "an operator"),
@@ -326,8 +349,8 @@ mod tests {
             ("x1)", "\")\" at character 3", "an operator"),
             ("max(1)", "\")\" at character 6", "a second argument of max"),
             ("sin(1, 2)", "\",\" at character 6", "the ) of sin"),
-            ("x1 + * 2", "\"*\" at character 6", "a number, x1, x2"),
-            ("3 + height", "\"height\" at character 5", "the names x1, x2, PI and the functions abs"),
+            ("x1 + * 2", "\"*\" at character 6", "a number, x1, x2, x3"),
+            ("3 + height", "\"height\" at character 5", "the names x1, x2, x3, PI and the functions abs"),
             ("pi", "\"pi\" at character 1", "PI"),
             ("1..2", "\".\" at character 3", "an operator"),
             (".", "\".\" at character 1", "a number such as"),

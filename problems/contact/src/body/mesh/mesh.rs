@@ -1,0 +1,299 @@
+//! A mesh: nodes, cells, named faces and node sets.
+
+use crate::body::elasticity::CellNodes;
+use crate::body::mesh::CellKind;
+use crate::error::SceneError;
+use crate::scalar::Scalar;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A face of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct CellFace {
+    /// The cell.
+    pub cell: u32,
+    /// Its face, in the order of [`CellKind::faces`].
+    pub face: u8,
+}
+
+/// A cell: its kind and nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cell<'a> {
+    /// What it is.
+    pub kind: CellKind,
+    /// Its nodes in the order of the kind.
+    pub nodes: &'a [u32],
+}
+
+/// Nodes, cells and their names. The positions of the nodes are those of the reference shape.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mesh {
+    nodes: Vec<[f64; 3]>,
+    kinds: Vec<CellKind>,
+    starts: Vec<u32>,
+    connectivity: Vec<u32>,
+    /// Names of volumes, and the volume of every cell.
+    volumes: Vec<String>,
+    volume_of: Vec<u16>,
+    faces: BTreeMap<String, Vec<CellFace>>,
+    node_sets: BTreeMap<String, Vec<u32>>,
+    /// The piece of every cell, where the mesh brings its own.
+    pieces: Option<Vec<u32>>,
+}
+
+/// The name of the only volume of a mesh without named volumes.
+pub const WHOLE: &str = "body";
+
+impl Mesh {
+    /// A mesh of one volume, without names.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for positions that are not finite, a mesh without cells, a cell with another number of
+    /// nodes than its kind has, with a node that does not exist or with one node twice.
+    pub fn new<C: AsRef<[usize]>>(
+        nodes: Vec<[f64; 3]>,
+        cells: impl IntoIterator<Item = (CellKind, C)>,
+    ) -> Result<Self, SceneError> {
+        if let Some(node) = nodes.iter().position(|x| x.iter().any(|x| !x.is_finite())) {
+            let value = format!("{:?}", nodes[node]);
+            return Err(SceneError::out_of_range(format!("position of node {node}"), value, "finite numbers (mm)"));
+        }
+        let mut mesh = Self {
+            nodes,
+            kinds: Vec::new(),
+            starts: vec![0],
+            connectivity: Vec::new(),
+            volumes: vec![WHOLE.into()],
+            volume_of: Vec::new(),
+            faces: BTreeMap::new(),
+            node_sets: BTreeMap::new(),
+            pieces: None,
+        };
+        for (number, (kind, nodes)) in cells.into_iter().enumerate() {
+            mesh.push(number, kind, nodes.as_ref())?;
+        }
+        SceneError::require(!mesh.kinds.is_empty(), "cells of a mesh", 0, "at least one")?;
+        mesh.volume_of = vec![0; mesh.kinds.len()];
+        Ok(mesh)
+    }
+
+    fn push(&mut self, number: usize, kind: CellKind, nodes: &[usize]) -> Result<(), SceneError> {
+        let (name, count) = (format!("nodes of cell {number} ({})", kind.name()), self.nodes.len());
+        SceneError::require(nodes.len() == kind.node_count(), &name, nodes.len(), kind.node_count().to_string())?;
+        let repeated = |(index, node): (usize, &usize)| nodes[..index].contains(node) || *node >= count;
+        if nodes.iter().enumerate().any(repeated) {
+            let allowed = format!("different nodes from 0 to {}", count.saturating_sub(1));
+            return Err(SceneError::out_of_range(name, format!("{nodes:?}"), allowed));
+        }
+        self.connectivity.extend(nodes.iter().map(|&node| narrow(node)));
+        self.starts.push(narrow(self.connectivity.len()));
+        self.kinds.push(kind);
+        Ok(())
+    }
+
+    /// Gives a name to some faces of cells.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a face that does not exist.
+    pub fn with_face(mut self, name: impl Into<String>, faces: Vec<CellFace>) -> Result<Self, SceneError> {
+        let name = name.into();
+        let exists = |face: &CellFace| {
+            self.kinds.get(face.cell as usize).is_some_and(|kind| usize::from(face.face) < kind.faces().len())
+        };
+        if let Some(bad) = faces.iter().find(|face| !exists(face)) {
+            let allowed = format!("faces of the {} cells", self.kinds.len());
+            return Err(SceneError::out_of_range(format!("face \"{name}\""), format!("{bad:?}"), allowed));
+        }
+        self.faces.insert(name, faces);
+        Ok(self)
+    }
+
+    /// Gives a name to some nodes.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a node that does not exist.
+    pub fn with_node_set(mut self, name: impl Into<String>, mut nodes: Vec<u32>) -> Result<Self, SceneError> {
+        let (name, count) = (name.into(), self.nodes.len());
+        if let Some(bad) = nodes.iter().find(|node| **node as usize >= count) {
+            return Err(SceneError::out_of_range(format!("node set \"{name}\""), bad, format!("nodes below {count}")));
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        self.node_sets.insert(name, nodes);
+        Ok(self)
+    }
+
+    /// Gives every cell its volume by number, and the volumes their names.
+    ///
+    /// # Errors
+    /// [`SceneError`] unless there is a number below the number of names for every cell.
+    pub fn with_volumes(mut self, names: Vec<String>, volume_of: Vec<u16>) -> Result<Self, SceneError> {
+        check_count("volumes of cells", self.kinds.len(), volume_of.len())?;
+        if let Some(bad) = volume_of.iter().find(|volume| usize::from(**volume) >= names.len()) {
+            return Err(SceneError::out_of_range("volume of a cell", bad, format!("numbers below {}", names.len())));
+        }
+        (self.volumes, self.volume_of) = (names, volume_of);
+        Ok(self)
+    }
+
+    /// Divides the cells into pieces, numbered from 0 without gap.
+    ///
+    /// # Errors
+    /// [`SceneError`] unless there is a number for every cell and a cell for every number.
+    pub fn with_pieces(mut self, pieces: Vec<u32>) -> Result<Self, SceneError> {
+        check_count("pieces of cells", self.kinds.len(), pieces.len())?;
+        let count = pieces.iter().copied().max().map_or(0, |last| last as usize + 1);
+        let mut seen = vec![false; count.min(pieces.len() + 1)];
+        pieces.iter().for_each(|&piece| seen.get_mut(piece as usize).into_iter().for_each(|seen| *seen = true));
+        if seen.len() < count || seen.contains(&false) {
+            let allowed = "numbers from 0 on without gap";
+            return Err(SceneError::out_of_range("pieces of cells", format!("{count} numbers"), allowed));
+        }
+        self.pieces = Some(pieces);
+        Ok(self)
+    }
+
+    /// The mesh with other reference positions.
+    #[must_use]
+    pub fn moved(mut self, change: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        self.nodes.iter_mut().for_each(|x| *x = change(*x));
+        self
+    }
+
+    /// Reference positions of the nodes, mm.
+    pub fn nodes(&self) -> &[[f64; 3]] {
+        &self.nodes
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// A cell.
+    pub fn cell(&self, cell: usize) -> Cell<'_> {
+        let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+        Cell { kind: self.kinds[cell], nodes: &self.connectivity[range] }
+    }
+
+    /// All cells in order.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = Cell<'_>> {
+        (0..self.cell_count()).map(|cell| self.cell(cell))
+    }
+
+    /// Names of the volumes.
+    pub fn volumes(&self) -> &[String] {
+        &self.volumes
+    }
+
+    /// The volume of a cell by its number.
+    pub fn volume_of(&self, cell: usize) -> usize {
+        usize::from(self.volume_of[cell])
+    }
+
+    /// Named faces.
+    pub fn faces(&self) -> &BTreeMap<String, Vec<CellFace>> {
+        &self.faces
+    }
+
+    /// Named sets of nodes, each ascending.
+    pub fn node_sets(&self) -> &BTreeMap<String, Vec<u32>> {
+        &self.node_sets
+    }
+
+    /// The piece of every cell, where the mesh brings its own.
+    pub fn pieces(&self) -> Option<&[u32]> {
+        self.pieces.as_deref()
+    }
+
+    /// Nodes of a face of a cell: corners counterclockwise seen from outside, then the middles of the edges.
+    pub fn face_nodes(&self, face: CellFace) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let cell = self.cell(face.cell as usize);
+        cell.kind.faces()[usize::from(face.face)].iter().map(move |&local| cell.nodes[local])
+    }
+
+    /// Nodes of a face of a cell, and how many of them are its corners.
+    pub fn face_with_corners(&self, face: CellFace) -> (Vec<u32>, usize) {
+        (self.face_nodes(face).collect(), self.kinds[face.cell as usize].corner_count())
+    }
+
+    /// Positions of the nodes of a cell, as numbers of any kind.
+    pub(crate) fn cell_at<T>(&self, cell: usize, position: impl Fn(u32) -> [T; 3]) -> CellNodes<T> {
+        let Cell { kind, nodes } = self.cell(cell);
+        let at = |v: usize| position(nodes[v]);
+        match kind {
+            CellKind::Hex8 => CellNodes::Hex8(std::array::from_fn(at)),
+            CellKind::Tet10 => CellNodes::Tet10(std::array::from_fn(at)),
+        }
+    }
+
+    /// Positions of the nodes of a cell.
+    pub fn cell_nodes(&self, cell: usize, positions: &[[f64; 3]]) -> CellNodes<f64> {
+        self.cell_at(cell, |node| positions[node as usize])
+    }
+
+    /// ∫N dV of every node of a cell, mm³.
+    pub(crate) fn node_volumes<T: Scalar>(
+        &self,
+        cell: usize,
+        position: &impl Fn(u32) -> [T; 3],
+    ) -> impl Iterator<Item = (u32, T)> {
+        let volumes = self.cell_at(cell, position).node_volumes();
+        self.cell(cell).nodes.iter().copied().zip(volumes)
+    }
+
+    /// Values of the nodes of a cell, one node after the other.
+    pub fn cell_values(&self, cell: usize, values: &[[f64; 3]]) -> Vec<f64> {
+        self.cell(cell).nodes.iter().flat_map(|&node| values[node as usize]).collect()
+    }
+
+    /// Mean position of the nodes of a cell.
+    pub fn centre(&self, cell: usize, positions: &[[f64; 3]]) -> [f64; 3] {
+        let nodes = self.cell(cell).nodes;
+        let mean = |axis: usize| nodes.iter().map(|&node| positions[node as usize][axis]).sum::<f64>();
+        std::array::from_fn(|axis| mean(axis) / nodes.len() as f64)
+    }
+
+    /// Volume of all cells, mm³.
+    pub fn volume(&self, positions: &[[f64; 3]]) -> f64 {
+        (0..self.cell_count()).map(|cell| self.cell_nodes(cell, positions).volume()).sum()
+    }
+
+    /// ∂(volume)/∂x per node, mm².
+    pub fn volume_derivative(&self, positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut result = vec![[0.0; 3]; self.node_count()];
+        for cell in 0..self.cell_count() {
+            let derivative = self.cell_nodes(cell, positions).volume_derivative();
+            for (&node, derivative) in self.cell(cell).nodes.iter().zip(derivative) {
+                (0..3).for_each(|axis| result[node as usize][axis] += derivative[axis]);
+            }
+        }
+        result
+    }
+}
+
+/// The smallest side of the box around some points.
+pub(crate) fn smallest_extent(points: &[[f64; 3]]) -> f64 {
+    let extent = |axis: usize| {
+        let along = || points.iter().map(|point| point[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    extent(0).min(extent(1)).min(extent(2))
+}
+
+/// Indices of meshes have 32 bits.
+pub(crate) fn narrow(index: usize) -> u32 {
+    u32::try_from(index).expect("invariant: meshes have fewer than 2³² entries")
+}
+
+fn check_count(what: &str, expected: usize, found: usize) -> Result<(), SceneError> {
+    match expected == found {
+        true => Ok(()),
+        false => Err(SceneError::WrongCount { what: what.into(), expected, found }),
+    }
+}

@@ -1,0 +1,345 @@
+//! A part of a body with its own matrix: nodes, pattern, scatter of cell matrices, elimination order, fixing nodes.
+//!
+//! A piece is a subdomain of total FETI, or a whole body for direct condensation. Pieces whose cells are numbered alike
+//! share pattern and symbolic factor: all subdomains of a block do.
+
+use crate::body::elasticity::Material;
+use crate::body::elasticity::stiffness::lower_start;
+use crate::body::mesh::{Mesh, narrow};
+use crate::body::Body;
+use crate::linear::FactorizationError;
+use crate::linear::cholesky::SymbolicFactor;
+use crate::linear::ordering::nested_dissection;
+use crate::linear::symmetric::LowerPattern;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A part of a body.
+#[derive(Debug)]
+pub struct Piece {
+    /// Its cells in the mesh, ascending.
+    pub cells: Vec<u32>,
+    /// Its nodes with displacements of their own, ascending: dofs 3·index + component.
+    pub nodes: Vec<u32>,
+    /// What it shares with pieces that are numbered alike.
+    pub pattern: Arc<PiecePattern>,
+}
+
+/// What pieces share whose cells are numbered alike.
+#[derive(Debug)]
+pub struct PiecePattern {
+    /// Lower triangle of the stiffness matrix.
+    pub lower: Arc<LowerPattern>,
+    cells: Vec<LocalCell>,
+    /// Position of the lower entries of every cell in the value array, cell by cell.
+    scatter: Vec<u32>,
+    /// Three nodes that span a large triangle: enough to hold all rigid motions.
+    pub fixing: [usize; 3],
+    /// Points and neighbours of the nodes, for elimination orders.
+    points: Vec<[f64; 3]>,
+    graph: Vec<Vec<u32>>,
+}
+
+/// A cell of a piece.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct LocalCell {
+    /// Its nodes in the piece; of a node tied between two others, those.
+    nodes: Vec<LocalNode>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum LocalNode {
+    Own(u32),
+    /// The middle of two nodes of the same cell, by their places among its nodes.
+    Between([u8; 2]),
+}
+
+/// Entries of cell matrices at nodes that are tied have no place.
+const NOWHERE: u32 = u32::MAX;
+
+/// Patterns by the numbering of their cells.
+pub type Patterns = HashMap<(Vec<Vec<u64>>, [usize; 3]), Arc<PiecePattern>>;
+
+impl Piece {
+    /// The piece of some cells of a body, ascending; patterns are shared by way of `known`.
+    pub fn new(body: &Body, cells: Vec<u32>, known: &mut Patterns) -> Self {
+        let mesh = &*body.mesh;
+        let mut nodes: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell(cell as usize).nodes).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.retain(|node| body.ends_of(*node).is_none());
+        let local: Vec<LocalCell> = cells.iter().map(|&cell| local_cell(body, &nodes, cell as usize)).collect();
+        let points: Vec<[f64; 3]> = nodes.iter().map(|&node| mesh.nodes()[node as usize]).collect();
+        let fixing = fixing_nodes(&points);
+        let code = |node: &LocalNode| match *node {
+            LocalNode::Own(node) => u64::from(node),
+            LocalNode::Between([a, b]) => 1 << 40 | u64::from(a) << 8 | u64::from(b),
+        };
+        let key = (local.iter().map(|cell| cell.nodes.iter().map(code).collect()).collect(), fixing);
+        let build = || Arc::new(PiecePattern::new(local, points, fixing));
+        let pattern = Arc::clone(known.entry(key).or_insert_with(build));
+        Self { cells, nodes, pattern }
+    }
+
+    /// Number of dofs, three per node.
+    pub fn dof_count(&self) -> usize {
+        3 * self.nodes.len()
+    }
+
+    /// The place of a node of the mesh among the nodes of the piece.
+    pub fn local(&self, node: u32) -> Option<usize> {
+        self.nodes.binary_search(&node).ok()
+    }
+
+    /// Positions of its nodes.
+    pub fn positions<'a>(&'a self, positions: &'a [[f64; 3]]) -> impl Iterator<Item = [f64; 3]> + 'a {
+        self.nodes.iter().map(|&node| positions[node as usize])
+    }
+
+    /// Values of the stiffness matrix over [`PiecePattern::lower`], for the materials of a body or others in their place.
+    pub fn assemble(&self, body: &Body, positions: &[[f64; 3]], material: impl Fn(&Material) -> Material) -> Vec<f64> {
+        let mut values = vec![0.0; self.pattern.lower.entry_count()];
+        let mut scatter = self.pattern.scatter.iter();
+        for (&cell, local) in self.cells.iter().zip(&self.pattern.cells) {
+            let cell = cell as usize;
+            let mut matrix = body.mesh.cell_nodes(cell, positions).stiffness(&material(body.material(cell)));
+            local.fold(&mut matrix);
+            for (entry, &place) in matrix.iter().zip(scatter.by_ref().take(matrix.len())) {
+                if place != NOWHERE {
+                    values[place as usize] += entry;
+                }
+            }
+        }
+        values
+    }
+
+    /// Displacements of all nodes of a cell, by its place among the cells, from those of the piece.
+    pub fn cell_values(&self, index: usize, values: &[f64], cell_values: &mut Vec<f64>) {
+        self.pattern.cells[index].gather(values, cell_values);
+    }
+
+    /// Adds forces on all nodes of a cell to those of the piece; a tied node hands over half to each of its ends.
+    pub fn add_cell_forces(&self, index: usize, forces: &[f64], sum: &mut [f64]) {
+        let cell = &self.pattern.cells[index];
+        for (node, force) in cell.nodes.iter().zip(forces.as_chunks::<3>().0) {
+            let mut add = |place: u32, share: f64| {
+                (0..3).for_each(|axis| sum[3 * place as usize + axis] += share * force[axis]);
+            };
+            match *node {
+                LocalNode::Own(place) => add(place, 1.0),
+                LocalNode::Between(ends) => {
+                    cell.own(ends).into_iter().for_each(|place| add(place, 0.5));
+                }
+            }
+        }
+    }
+
+    /// Adds a force on a node of the mesh to the forces on the piece; half of it on each end of a tied node.
+    pub fn add_force(&self, body: &Body, node: u32, force: [f64; 3], sum: &mut [f64]) {
+        let mut add = |node: u32, share: f64| {
+            let place = self.local(node).expect("invariant: cells of the piece have this node");
+            (0..3).for_each(|axis| sum[3 * place + axis] += share * force[axis]);
+        };
+        match body.ends_of(node) {
+            None => add(node, 1.0),
+            Some(ends) => ends.into_iter().for_each(|end| add(end, 0.5)),
+        }
+    }
+
+    /// The value of a field over the piece at a node of the mesh.
+    pub fn value_at(&self, body: &Body, node: u32, values: &[f64]) -> [f64; 3] {
+        let at = |node: u32| {
+            let place = self.local(node).expect("invariant: cells of the piece have this node");
+            [values[3 * place], values[3 * place + 1], values[3 * place + 2]]
+        };
+        match body.ends_of(node) {
+            None => at(node),
+            Some([a, b]) => {
+                let (a, b) = (at(a), at(b));
+                std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]))
+            }
+        }
+    }
+}
+
+impl LocalCell {
+    /// The places in the piece of two own nodes of the cell.
+    fn own(&self, ends: Ends8) -> [u32; 2] {
+        ends.map(|end| match self.nodes[usize::from(end)] {
+            LocalNode::Own(place) => place,
+            LocalNode::Between(_) => unreachable!("invariant: ends of a tied node are vertices"),
+        })
+    }
+
+    fn gather(&self, values: &[f64], cell_values: &mut Vec<f64>) {
+        cell_values.clear();
+        for node in &self.nodes {
+            match *node {
+                LocalNode::Own(place) => cell_values.extend_from_slice(&values[3 * place as usize..][..3]),
+                LocalNode::Between(ends) => {
+                    let [a, b] = self.own(ends).map(|place| &values[3 * place as usize..][..3]);
+                    cell_values.extend(a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)));
+                }
+            }
+        }
+    }
+
+    /// Hands the rows and columns of tied nodes over to their ends: K ← Tᵀ K T with u = T (own displacements). `matrix`
+    /// is a lower triangle by rows.
+    fn fold(&self, matrix: &mut [f64]) {
+        let size = 3 * self.nodes.len();
+        let at = |row: usize, column: usize| lower_start(row.max(column)) + row.min(column);
+        for (node, tie) in self.nodes.iter().enumerate() {
+            let LocalNode::Between(ends) = *tie else { continue };
+            for component in 0..3 {
+                let tied = 3 * node + component;
+                let column: Vec<f64> = (0..size).map(|row| matrix[at(row, tied)]).collect();
+                let own = column[tied];
+                for &end in &ends {
+                    let end = 3 * usize::from(end) + component;
+                    for (row, entry) in column.iter().enumerate().filter(|(row, _)| *row != tied) {
+                        // The diagonal of an end takes its coupling with the tied node twice.
+                        matrix[at(row, end)] += if row == end { *entry } else { 0.5 * entry };
+                    }
+                }
+                let [a, b] = ends.map(|end| 3 * usize::from(end) + component);
+                for (row, column) in [(a, a), (b, b), (a, b)] {
+                    matrix[at(row, column)] += 0.25 * own;
+                }
+                (0..size).for_each(|row| matrix[at(row, tied)] = 0.0);
+            }
+        }
+    }
+}
+
+/// Two nodes of a cell by their places among its nodes.
+type Ends8 = [u8; 2];
+
+fn local_cell(body: &Body, nodes: &[u32], cell: usize) -> LocalCell {
+    let all = body.mesh.cell(cell).nodes;
+    let place = |node: u32| all.iter().position(|other| *other == node).map_or(0, |place| place as u8);
+    let local = |&node: &u32| match body.ends_of(node) {
+        Some(ends) => LocalNode::Between(ends.map(place)),
+        None => LocalNode::Own(narrow(nodes.binary_search(&node).expect("invariant: taken from these cells"))),
+    };
+    LocalCell { nodes: all.iter().map(local).collect() }
+}
+
+impl PiecePattern {
+    fn new(cells: Vec<LocalCell>, points: Vec<[f64; 3]>, fixing: [usize; 3]) -> Self {
+        let mut graph = vec![Vec::new(); points.len()];
+        let own = |cell: &LocalCell| -> Vec<u32> {
+            let own = |node: &LocalNode| if let LocalNode::Own(place) = *node { Some(place) } else { None };
+            cell.nodes.iter().filter_map(own).collect()
+        };
+        for cell in &cells {
+            let nodes = own(cell);
+            nodes.iter().for_each(|&node| graph[node as usize].extend_from_slice(&nodes));
+        }
+        fixing.iter().for_each(|&node| graph[node].extend(fixing.map(narrow)));
+        for (node, neighbours) in graph.iter_mut().enumerate() {
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            neighbours.retain(|other| *other as usize != node);
+        }
+        let lower = Arc::new(lower_pattern(&graph));
+        let scatter = cells.iter().flat_map(|cell| scatter(cell, &lower)).collect();
+        Self { lower, cells, scatter, fixing, points, graph }
+    }
+
+    /// Mean of the diagonal of a matrix, given by its values.
+    pub(crate) fn mean_diagonal(&self, values: &[f64]) -> f64 {
+        let (starts, dimension) = (self.lower.starts(), self.lower.dimension());
+        (0..dimension).map(|column| values[starts[column]]).sum::<f64>() / dimension as f64
+    }
+
+    /// Elimination order of the dofs by nested dissection, with those of `last` nodes at the end.
+    pub fn elimination_order(&self, last: &[usize]) -> Vec<usize> {
+        let mut chained;
+        let graph = if last.len() > 1 {
+            // A chain keeps the last nodes in place in the elimination tree, whatever fill couples them.
+            chained = self.graph.clone();
+            for pair in last.windows(2) {
+                chained[pair[0]].push(narrow(pair[1]));
+                chained[pair[1]].push(narrow(pair[0]));
+            }
+            &chained
+        } else {
+            &self.graph
+        };
+        let nodes = nested_dissection(&self.points, graph, last);
+        nodes.into_iter().flat_map(|node| 3 * node..3 * node + 3).collect()
+    }
+
+    /// Symbolic factor for [`Self::elimination_order`].
+    ///
+    /// # Errors
+    /// [`FactorizationError`] when the analysis fails.
+    pub fn symbolic(&self, last: &[usize]) -> Result<Arc<SymbolicFactor>, FactorizationError> {
+        Ok(Arc::new(SymbolicFactor::new(Arc::clone(&self.lower), self.elimination_order(last))?))
+    }
+}
+
+/// The lower triangle over three dofs per node.
+fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
+    let mut columns = Vec::with_capacity(3 * graph.len());
+    for (node, neighbours) in graph.iter().enumerate() {
+        let later = neighbours.iter().map(|&other| other as usize).filter(|&other| other > node);
+        let rows: Vec<usize> = std::iter::once(node).chain(later).flat_map(|row| 3 * row..3 * row + 3).collect();
+        columns.extend((3 * node..3 * node + 3).map(|column| rows[column - 3 * node..].to_vec()));
+    }
+    LowerPattern::from_columns(columns)
+}
+
+/// Positions of the lower entries of the matrix of a cell.
+fn scatter(cell: &LocalCell, lower: &LowerPattern) -> Vec<u32> {
+    let dof = |dof: usize| match cell.nodes[dof / 3] {
+        LocalNode::Own(place) => Some(3 * place as usize + dof % 3),
+        LocalNode::Between(_) => None,
+    };
+    let size = 3 * cell.nodes.len();
+    let mut positions = Vec::with_capacity(lower_start(size));
+    for row in 0..size {
+        for column in 0..=row {
+            positions.push(match (dof(row), dof(column)) {
+                (Some(row), Some(column)) => {
+                    let position = lower.position(row.max(column), row.min(column));
+                    narrow(position.expect("invariant: dofs of a cell are coupled"))
+                }
+                _ => NOWHERE,
+            });
+        }
+    }
+    positions
+}
+
+/// Three of some points that span a large triangle. Points that are as far as others up to rounding count as equal, so
+/// that pieces of the same form have the same ones.
+fn fixing_nodes(points: &[[f64; 3]]) -> [usize; 3] {
+    let difference = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| a[axis] - b[axis]) };
+    let square = |a: [f64; 3]| a.iter().map(|x| x * x).sum::<f64>();
+    let cross = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+    };
+    let farthest = |measure: &dyn Fn([f64; 3]) -> f64| {
+        let largest = points.iter().map(|point| measure(*point)).fold(0.0, f64::max);
+        points.iter().position(|point| measure(*point) >= (1.0 - 1e-9) * largest).unwrap_or(0)
+    };
+    let count = points.len() as f64;
+    let centre: [f64; 3] = std::array::from_fn(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / count);
+    let first = farthest(&|point| square(difference(point, centre)));
+    let second = farthest(&|point| square(difference(point, points[first])));
+    let along = difference(points[second], points[first]);
+    let third = farthest(&|point| square(cross(along, difference(point, points[first]))));
+    [first, second, third]
+}
+
+impl Mesh {
+    /// The cells of every piece.
+    pub(crate) fn cells_by_piece(&self, piece_of: &[u32]) -> Vec<Vec<u32>> {
+        let count = piece_of.iter().copied().max().map_or(0, |last| last as usize + 1);
+        let mut cells = vec![Vec::new(); count];
+        piece_of.iter().enumerate().for_each(|(cell, &piece)| cells[piece as usize].push(narrow(cell)));
+        cells
+    }
+}
