@@ -9,7 +9,7 @@
 //! $NodeData        written, not read
 //! ```
 //! Format: *Gmsh reference manual*, "MSH file format", gmsh.info. Elements name their entity only, and the entity
-//! names the physical groups, at most 100 here. A group without a name is called by its tag. Other sections are
+//! names the physical groups, at most 32 here. A group without a name is called by its tag. Other sections are
 //! skipped. A file without names of groups is read without `$Entities` too; it has no groups then.
 //!
 //! [`write()`] gives a file from which [`read`] makes the same mesh. It keeps order and tags of nodes, cells and

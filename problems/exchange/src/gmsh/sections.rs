@@ -33,7 +33,7 @@ type Entities = HashMap<(usize, i32), Rc<[u32]>>;
 
 /// Most physical groups of an entity. Members of groups grow with the product of elements and groups, and their memory
 /// must be in proportion to the file.
-pub(super) const MAX_GROUPS: usize = 100;
+pub(super) const MAX_GROUPS: usize = 32;
 
 /// What is allowed where a tag or a section must be new.
 const NEW: &str = "one that has not appeared before";

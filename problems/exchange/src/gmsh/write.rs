@@ -13,7 +13,7 @@ use std::io::Write;
 ///
 /// # Errors
 /// [`GmshError::Mesh`] for a mesh without cells, for numbers of nodes that do not fit a kind, ids that do not exist,
-/// tags that are 0 or not unique, coordinates that are not finite, more than 100 groups with one member, and names that
+/// tags that are 0 or not unique, coordinates that are not finite, more than 32 groups with one member, and names that
 /// are empty or have quotation marks or more than one line.
 pub fn write(mesh: &GmshMesh, binary: bool) -> Result<Vec<u8>, GmshError> {
     write_with_data(mesh, &[], binary)
