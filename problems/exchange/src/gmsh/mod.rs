@@ -3,7 +3,7 @@
 //! ```text
 //! $MeshFormat      version, text or binary, size of a number; the int 1 in binary files, which tells the byte order
 //! $PhysicalNames   dimension and tag of a physical group → name; text in binary files too
-//! $Entities        points, curves, surfaces, volumes: tag → physical groups, any number of them
+//! $Entities        points, curves, surfaces, volumes: tag → tags of physical groups
 //! $Nodes           blocks: tags, then coordinates, with parameters on the entity if the flag of the block is 1
 //! $Elements        blocks: entity and type, then tag and nodes of each element
 //! $NodeData        written, not read
