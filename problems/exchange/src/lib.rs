@@ -1,16 +1,18 @@
 //! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files;
-//! grids with data as VTU files.
+//! grids with data as VTU files; volume meshes as Gmsh files, which are read too.
 //!
 //! ```text
 //! heights on lines ─ triangles ─ stl        chord error bounded by second derivatives (triangulation.rs)
 //! B-spline heights ─ step                   exact: x₁, x₂ of the control points are Greville abscissae (step)
 //! entries          ─ matrix_market
 //! points, cells    ─ vtk                    arrays with units, numbers without rounding
+//! mesh, groups     ─ gmsh                   read and written, text and binary
 //! ```
 //! The package knows numbers only: no mechanics, no command line. Lengths are in mm. The same input gives the same
 //! bytes.
 
 mod error;
+pub mod gmsh;
 mod heights;
 pub mod matrix_market;
 pub mod step;
