@@ -122,11 +122,16 @@ impl Canvas {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, false), stroke.attributes());
     }
 
-    /// Pieces of lines as one path.
-    pub fn pieces(&mut self, pieces: &[[Place; 2]], colour: &str) {
-        let paths: String = pieces.iter().map(|piece| path(piece, false)).collect();
+    /// Lines through places as one path.
+    pub fn lines(&mut self, lines: &[Vec<Place>], stroke: Stroke) {
+        let paths: String = lines.iter().map(|line| tenths(line)).collect();
         if !paths.is_empty() {
-            let _ = writeln!(self.body, "<path d=\"{paths}\" {}/>", Stroke::solid(colour, 0.9).attributes());
+            let stroke = Stroke { width: 10.0 * stroke.width, ..stroke }.attributes();
+            let _ = writeln!(
+                self.body,
+                "<path transform=\"scale(.1)\" {stroke} stroke-linejoin=\"round\" stroke-linecap=\"round\" \
+                 d=\"{paths}\"/>"
+            );
         }
     }
 
@@ -135,35 +140,14 @@ impl Canvas {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, true), stroke.attributes());
     }
 
-    /// Areas of one colour as one path; where they overlap nothing changes.
+    /// Areas of one colour as one path; where they overlap nothing changes. A rim of the same colour hides seams
+    /// between neighbours.
     pub fn area<'a>(&mut self, colour: &str, areas: impl IntoIterator<Item = &'a [Place]>) {
-        let paths: String = areas.into_iter().map(tenths).collect();
+        let paths: String = areas.into_iter().map(closed).collect();
         if !paths.is_empty() {
-            let _ = writeln!(self.body, "<path transform=\"scale(.1)\" fill=\"{colour}\" d=\"{paths}\"/>");
+            let rim = format!("stroke=\"{colour}\" stroke-width=\"3\" stroke-linejoin=\"round\"");
+            let _ = writeln!(self.body, "<path transform=\"scale(.1)\" {rim} fill=\"{colour}\" d=\"{paths}\"/>");
         }
-    }
-
-    /// Areas one over the other, each with its colour and either lines around it or a rim of its own colour, which
-    /// hides the seams between neighbours. Without lines, areas of one colour that follow each other become one path.
-    pub fn covering(&mut self, lines: Option<Stroke>, areas: impl IntoIterator<Item = (String, [Place; 4])>) {
-        let (colour, width) =
-            lines.map_or((String::new(), 0.4), |line| (format!(" stroke=\"{}\"", line.colour), line.width));
-        let _ = writeln!(
-            self.body,
-            "<g transform=\"scale(.1)\"{colour} stroke-width=\"{:.1}\" stroke-linejoin=\"round\">",
-            10.0 * width
-        );
-        let mut last = None;
-        for (colour, places) in areas {
-            if lines.is_some() || last.as_ref() != Some(&colour) {
-                self.body += if last.is_some() { "\"/>\n" } else { "" };
-                let rim = if lines.is_some() { String::new() } else { format!(" stroke=\"{colour}\"") };
-                let _ = write!(self.body, "<path fill=\"{colour}\"{rim} d=\"");
-                last = Some(colour);
-            }
-            self.body += &tenths(&places);
-        }
-        self.body += if last.is_some() { "\"/>\n</g>\n" } else { "</g>\n" };
     }
 
     /// A rectangle filled with a colour.
@@ -257,7 +241,12 @@ fn path(places: &[Place], closed: bool) -> String {
     text
 }
 
-/// A closed path in tenths of points, relative positions: half the length of absolute ones.
+/// A closed path in tenths of points.
+pub(super) fn closed(places: &[Place]) -> String {
+    tenths(places) + "z"
+}
+
+/// A path in tenths of points, relative positions: half the length of absolute ones.
 fn tenths(places: &[Place]) -> String {
     let mut text = String::new();
     let mut last = [0_i64; 2];
@@ -271,7 +260,6 @@ fn tenths(places: &[Place]) -> String {
         };
         last = here;
     }
-    text.push('z');
     text
 }
 
@@ -293,6 +281,6 @@ mod tests {
 
     #[test]
     fn areas_are_written_relative_in_tenths() {
-        assert_eq!(tenths(&[[1.0, 2.0], [3.04, 2.0], [3.0, 4.5]]), "M10 20l20 0 0 25z");
+        assert_eq!(closed(&[[1.0, 2.0], [3.04, 2.0], [3.0, 4.5]]), "M10 20l20 0 0 25z");
     }
 }

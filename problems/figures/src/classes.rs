@@ -1,18 +1,19 @@
-//! Classes of the nodes of plane grids, with arrows at the nodes: panels side by side.
+//! Classes of the points of meshes in a plane, with arrows at the points: panels side by side.
 
 use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
-use super::chart::{Frame, Parts, ROOM_BELOW};
-use super::error::{FigureError, below, cells, count, finite, positive, some};
+use super::chart::{Frame, ROOM_BELOW};
+use super::error::{FigureError, below, count, finite, some};
 use super::figure::Figure;
-use super::nodes::PlaneGrid;
-use super::panel_layout::{PanelLayout, ROOM_LEFT};
-use super::scale::{Axis, behind, nice_below, number};
+use super::panel_layout::PanelLayout;
+use super::plan::{Plan, spread};
+use super::regions::{borders, parts};
+use super::scale::{behind, nice_below, number};
 
-/// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the
-/// nodes, all on one scale; on fine grids only some are drawn.
+/// Every point is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the
+/// points, all on one scale; on fine meshes only some are drawn.
 ///
 /// ```
-/// use figures::{ClassPanel, Classes};
+/// use figures::{ClassPanel, Classes, grid_faces};
 /// let classes = Classes {
 ///     name: "status".into(),
 ///     title: "Contact status".into(),
@@ -21,16 +22,15 @@ use super::scale::{Axis, behind, nice_below, number};
 ///     arrows: Some(("traction".into(), "MPa".into())),
 ///     panels: vec![ClassPanel {
 ///         caption: "start".into(),
-///         counts: [2, 2],
-///         origin: [0.0, 0.0],
-///         size: [10.0, 10.0],
+///         points: vec![[0.0, 0.0], [0.0, 10.0], [10.0, 0.0], [10.0, 10.0]],
+///         faces: grid_faces([2, 2]),
 ///         classes: vec![0, 1, 2, 2],
 ///         arrows: vec![[0.0, 0.0], [5.0, 0.0], [10.0, 0.0], [0.0, 10.0]],
 ///     }],
 /// };
 /// let figure = classes.figure()?;
 /// assert!(figure.svg.contains("open 1, stick 1, slip 2"));
-/// assert!(figure.svg.contains("<title>node (1, 0) at (10, 0): slip, traction (10, 0) MPa</title>"));
+/// assert!(figure.svg.contains("<title>node 2 at (10, 0): slip, traction (10, 0) MPa</title>"));
 /// # Ok::<(), figures::FigureError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -49,27 +49,25 @@ pub struct Classes {
     pub panels: Vec<ClassPanel>,
 }
 
-/// One grid of nodes.
+/// Classes on one mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassPanel {
     /// What distinguishes it from the other panels.
     pub caption: String,
-    /// Nodes n₁, n₂ along both axes, at least 2.
-    pub counts: [usize; 2],
-    /// Position of the first node.
-    pub origin: [f64; 2],
-    /// Lengths between the first and the last node along both axes, > 0.
-    pub size: [f64; 2],
-    /// The class of every node, index i·n₂ + j with i along the first axis.
+    /// Coordinates along both axes.
+    pub points: Vec<[f64; 2]>,
+    /// Triangles and quadrilaterals between points, side by side.
+    pub faces: Vec<Vec<usize>>,
+    /// The class of every point.
     pub classes: Vec<usize>,
-    /// The arrow of every node along both axes; as many as nodes where the figure has arrows.
+    /// The arrow of every point along both axes; as many as points where the figure has arrows.
     pub arrows: Vec<[f64; 2]>,
 }
 
 /// Colours of the classes; black arrows are seen on all.
 const COLOURS: [&str; 5] = ["#e9e9e9", "#8fbbe3", "#f2b277", "#9fd3a8", "#d3a6d9"];
-/// Most arrows along an axis.
-const MAX_ARROWS: usize = 16;
+/// Least distance of arrows along one axis or the other, points; a little less than a 16th of a panel's longer side.
+const MIN_DISTANCE: f64 = 17.4;
 /// Length of the longest arrow, in distances of arrows.
 const LONGEST: f64 = 1.1;
 
@@ -77,17 +75,19 @@ impl Classes {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels or classes; unless a panel has at least 2 × 2 nodes, a class per node that
-    /// exists, an arrow per node if there are arrows, sides of positive length, and all numbers are finite.
+    /// [`FigureError`] without panels, faces or classes; unless every face joins three or four different points, the
+    /// points of a panel have an extent along both axes, there is a class per point that exists and an arrow per point
+    /// if there are arrows, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         some(&self.name, "classes", self.classes.len())?;
-        self.panels.iter().try_for_each(|panel| self.check(panel))?;
-        let grids: Vec<PlaneGrid> = self.panels.iter().map(ClassPanel::grid).collect();
+        let plans = self.panels.iter().enumerate().map(|(index, panel)| self.plan(panel, index));
+        let plans = plans.collect::<Result<Vec<Plan<'_>>, FigureError>>()?;
         let captions: Vec<[String; 2]> =
             self.panels.iter().map(|panel| [panel.caption.clone(), self.counted(panel)]).collect();
-        let layout = PanelLayout::new(&grids, &captions, 0.0);
-        let arrows = self.arrow_scale(&layout);
+        let layout = PanelLayout::new(&plans, &captions, 0.0);
+        let drawn = self.panels.iter().zip(&plans).zip(&layout.frames).map(Drawn::new).collect::<Vec<Drawn<'_>>>();
+        let arrows = self.arrow_scale(&drawn);
         let names = self.classes.iter().map(|name| text_width(name, LABEL));
         let label = arrows.iter().map(|(_, _, label)| text_width(label, LABEL));
         let legend = names.chain(label).fold(0.0, f64::max) + 54.0;
@@ -96,9 +96,9 @@ impl Classes {
         canvas.text([16.0, 22.0], TITLE, &self.title);
         let end = layout.frames[0].top + 22.0 * self.classes.len() as f64 + 50.0;
         layout.write(&mut canvas, &captions, end);
-        for (index, panel) in self.panels.iter().enumerate() {
+        for drawn in &drawn {
             let points = arrows.as_ref().map_or(0.0, |(points, ..)| *points);
-            self.draw(&mut canvas, layout.frames[index], panel, points);
+            self.draw(&mut canvas, drawn, points);
         }
         let (x, mut y) = (layout.right, layout.frames[0].top + 2.0);
         for (index, name) in self.classes.iter().enumerate() {
@@ -114,15 +114,17 @@ impl Classes {
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
 
-    fn check(&self, panel: &ClassPanel) -> Result<(), FigureError> {
-        cells(&self.name, &panel.counts)?;
-        let nodes = panel.counts[0].saturating_mul(panel.counts[1]);
-        count(&self.name, "classes of a panel", nodes, panel.classes.len())?;
-        count(&self.name, "arrows of a panel", if self.arrows.is_some() { nodes } else { 0 }, panel.arrows.len())?;
-        below(&self.name, "class", &panel.classes, self.classes.len())?;
-        finite(&self.name, "arrow", panel.arrows.iter().flatten().copied())?;
-        finite(&self.name, "origin", panel.origin)?;
-        positive(&self.name, "side", panel.size)
+    fn plan<'a>(&self, panel: &'a ClassPanel, index: usize) -> Result<Plan<'a>, FigureError> {
+        let (figure, part, points) = (&self.name, format!("panel {index}"), panel.points.len());
+        let plan = Plan::new(figure, &part, &panel.points, &panel.faces)?;
+        let arrows = if self.arrows.is_some() { points } else { 0 };
+        count(figure, &format!("classes in {part}"), points, panel.classes.len())?;
+        count(figure, &format!("arrows in {part}"), arrows, panel.arrows.len())?;
+        below(figure, &format!("{part}, class of point"), &panel.classes, self.classes.len())?;
+        for axis in 0..2 {
+            finite(figure, &format!("{part}, arrow at point"), panel.arrows.iter().map(|arrow| arrow[axis]))?;
+        }
+        Ok(plan)
     }
 
     /// "open 4, stick 2"
@@ -133,15 +135,11 @@ impl Classes {
     }
 
     /// Points per unit of the arrows, the value of the arrow in the legend and its label; none without arrows.
-    fn arrow_scale(&self, layout: &PanelLayout) -> Option<(f64, f64, String)> {
+    fn arrow_scale(&self, drawn: &[Drawn<'_>]) -> Option<(f64, f64, String)> {
         let (quantity, unit) = self.arrows.as_ref()?;
         let lengths = self.panels.iter().flat_map(|panel| &panel.arrows).map(|[a, b]| a.hypot(*b));
         let largest = lengths.fold(0.0, f64::max);
-        let distance = self.panels.iter().zip(&layout.frames).map(|(panel, frame)| {
-            let [n1, n2] = panel.counts.map(|nodes| (nodes - 1) as f64);
-            panel.stride() as f64 * (frame.width / n1).min(frame.height / n2)
-        });
-        let longest = LONGEST * distance.fold(f64::INFINITY, f64::min);
+        let longest = LONGEST * drawn.iter().map(Drawn::distance).fold(f64::INFINITY, f64::min);
         if largest == 0.0 {
             return Some((0.0, 0.0, format!("no {quantity}")));
         }
@@ -149,48 +147,36 @@ impl Classes {
         Some((longest / largest, value, format!("{quantity} {}{}", number(value), behind(unit))))
     }
 
-    fn draw(&self, canvas: &mut Canvas, frame: Frame, panel: &ClassPanel, points: f64) {
-        let [n1, n2] = panel.counts;
-        let last = [n1 - 1, n2 - 1].map(|nodes| nodes as f64);
-        let place = |[i, j]: [f64; 2]| frame.place([(i / last[0]).clamp(0.0, 1.0), (j / last[1]).clamp(0.0, 1.0)]);
-        let cell = |node: usize| -> [Place; 4] {
-            let [i, j] = [(node / n2) as f64, (node % n2) as f64];
-            [[i - 0.5, j - 0.5], [i + 0.5, j - 0.5], [i + 0.5, j + 0.5], [i - 0.5, j + 0.5]].map(place)
-        };
+    fn draw(&self, canvas: &mut Canvas, drawn: &Drawn<'_>, points: f64) {
+        let Drawn { panel, plan, frame, places, arrows } = drawn;
         for class in 0..self.classes.len() {
-            let nodes = (0..n1 * n2).filter(|node| panel.classes[*node] == class);
-            let areas: Vec<[Place; 4]> = nodes.map(cell).collect();
-            canvas.area(colour(class), areas.iter().map(<[Place; 4]>::as_slice));
+            let parts = parts(&plan.faces, places).filter(|(point, _)| panel.classes[*point] == class);
+            let borders = borders(parts.map(|(_, part)| part));
+            canvas.area(colour(class), borders.iter().map(Vec::as_slice));
         }
-        let axis = |index: usize| {
-            let ends = [panel.origin[index], panel.origin[index] + panel.size[index]];
-            Axis::linear(&self.axes[index], "", ends, 0.0, 5)
-        };
-        frame.axes(canvas, &axis(0), &axis(1), Parts { left: ROOM_LEFT, grid: false });
-        for (node, [a, b]) in panel.arrows.iter().enumerate() {
-            let drawn = [node / n2, node % n2].iter().all(|index| index.is_multiple_of(panel.stride()));
-            let [x, y] = place([(node / n2) as f64, (node % n2) as f64]);
-            let [dx, dy] = [points * a, -points * b];
+        plan.axes(canvas, *frame, places, &self.axes);
+        for &point in arrows {
+            let ([x, y], Some([a, b])) = (places[point], panel.arrows.get(point)) else { continue };
+            let [dx, dy] = [0.5 * points * a, -0.5 * points * b];
             // Shorter ones are no arrows any more.
-            if drawn && dx.hypot(dy) > 0.7 {
-                let [dx, dy] = [0.5 * dx, 0.5 * dy];
+            if dx.hypot(dy) > 0.35 {
                 // Arrows at the edges are moved inwards: beyond the edges stand captions and labels.
                 let x = inside(x, dx.abs(), [frame.left, frame.left + frame.width]);
                 let y = inside(y, dy.abs(), [frame.top, frame.top + frame.height]);
                 canvas.arrow([[x - dx, y - dy], [x + dx, y + dy]], Stroke::solid(INK, 0.9));
             }
         }
-        let text = |node: usize| {
-            let class = &self.classes[panel.classes[node]];
+        let text = |point: usize| {
+            let class = &self.classes[panel.classes[point]];
             self.arrows.as_ref().map_or_else(
                 || class.clone(),
                 |(quantity, unit)| {
-                    let [a, b] = panel.arrows[node].map(number);
+                    let [a, b] = panel.arrows[point].map(number);
                     format!("{class}, {quantity} ({a}, {b}){}", behind(unit))
                 },
             )
         };
-        panel.grid().name_nodes(canvas, frame, text);
+        plan.name_points(canvas, places, text);
     }
 }
 
@@ -204,28 +190,39 @@ fn colour(class: usize) -> &'static str {
     COLOURS[class % COLOURS.len()]
 }
 
-impl ClassPanel {
-    fn grid(&self) -> PlaneGrid {
-        PlaneGrid { counts: self.counts, origin: self.origin, size: self.size }
+/// A panel with the places of its points.
+struct Drawn<'a> {
+    panel: &'a ClassPanel,
+    plan: &'a Plan<'a>,
+    frame: Frame,
+    places: Vec<Place>,
+    /// The points at which arrows are drawn.
+    arrows: Vec<usize>,
+}
+
+impl<'a> Drawn<'a> {
+    fn new(((panel, plan), &frame): ((&'a ClassPanel, &'a Plan<'a>), &Frame)) -> Self {
+        let places = plan.places(frame);
+        Self { panel, plan, frame, arrows: spread(&places, MIN_DISTANCE), places }
     }
 
-    /// Every how many nodes an arrow is drawn.
-    fn stride(&self) -> usize {
-        self.counts.map(|nodes| nodes.div_ceil(MAX_ARROWS)).into_iter().max().unwrap_or(1)
+    /// Distance of arrows on average.
+    fn distance(&self) -> f64 {
+        (self.frame.width * self.frame.height / self.arrows.len() as f64).sqrt()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid_faces;
 
     fn classes(arrows: bool) -> Classes {
         let nodes = 40 * 3;
         let panel = ClassPanel {
             caption: "c".into(),
-            counts: [40, 3],
-            origin: [0.0; 2],
-            size: [40.0, 3.0],
+            points: (0..nodes).map(|node| [(node / 3) as f64, (node % 3) as f64]).collect(),
+            faces: grid_faces([40, 3]),
             classes: (0..nodes).map(|node| node % 2).collect(),
             arrows: if arrows { vec![[1.0, 2.0]; nodes] } else { vec![] },
         };
@@ -243,8 +240,8 @@ mod tests {
     fn arrows_are_thinned_on_fine_grids_and_absent_where_there_are_none() {
         let heads = |figure: &Figure| figure.svg.matches(&format!("fill=\"{INK}\" d=\"M")).count();
         let (with, without) = (classes(true).figure().expect("numbers"), classes(false).figure().expect("numbers"));
-        // Every third node: 14 × 1, and the one of the legend.
-        assert_eq!((heads(&with), heads(&without)), (15, 0));
+        // Every third point along the longer side: 14 × 3, and the one of the legend.
+        assert_eq!((heads(&with), heads(&without)), (43, 0));
         assert!(with.svg.contains("traction 2 MPa<") && !without.svg.contains("MPa"));
         assert_eq!(without.svg.matches("<title>node").count(), 120);
     }
@@ -266,7 +263,7 @@ mod tests {
         wrong.panels[0].arrows.pop();
         assert!(matches!(wrong.figure(), Err(FigureError::Count { .. })));
         let mut wrong = classes(false);
-        wrong.panels[0].size[1] = 0.0;
+        wrong.panels[0].points.iter_mut().for_each(|point| point[1] = 0.0);
         assert!(matches!(wrong.figure(), Err(FigureError::Number { .. })));
     }
 }

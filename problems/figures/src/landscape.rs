@@ -1,13 +1,15 @@
 //! A function of two variables as filled levels, with the points that a method visited.
 
 use super::canvas::{Canvas, INK, Stroke, TITLE, text_width};
-use super::chart::{Frame, Parts, ROOM_BELOW};
+use super::chart::{Frame, ROOM_BELOW};
 use super::colours::CURVES;
-use super::error::{FigureError, finite, grid};
+use super::error::{FigureError, count, finite, positive, some};
 use super::figure::Figure;
-use super::levels::{ColourScale, Lattice, contour, fill};
+use super::grids::grid_faces;
+use super::levels::{ColourScale, Field, contour, fill};
 use super::marks::{self, Sign, kinds, legend_width, rows};
-use super::scale::Axis;
+use super::panel_layout::ROOM_LEFT;
+use super::plan::Plan;
 
 /// Values over a rectangle, lines on it, and a path.
 ///
@@ -67,8 +69,6 @@ pub struct Visit {
 
 /// Longer side of the frame, points.
 const SIDE: f64 = 380.0;
-/// Room at the left for labels and title of the vertical axis, points.
-const ROOM_LEFT: f64 = 52.0;
 
 impl Landscape {
     /// Draws it; what lies outside the rectangle is cut off.
@@ -78,6 +78,13 @@ impl Landscape {
     /// numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         self.check()?;
+        let [n1, n2] = self.counts;
+        let along = |axis: usize, index: usize, nodes: usize| {
+            self.origin[axis] + self.size[axis] * index as f64 / (nodes - 1).max(1) as f64
+        };
+        let points: Vec<[f64; 2]> =
+            (0..n1 * n2).map(|node| [along(0, node / n2, n1), along(1, node % n2, n2)]).collect();
+        let plan = Plan::new(&self.name, "ground", &points, &grid_faces(self.counts))?;
         let scale = ColourScale::new(&self.quantity, "", self.values.iter().copied());
         let longest = self.size[0].max(self.size[1]);
         let [width, height] = self.size.map(|side| SIDE * (side / longest).max(0.25));
@@ -92,7 +99,7 @@ impl Landscape {
             frame.top + height + ROOM_BELOW + 10.0,
         );
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        self.ground(&mut canvas, &frame, &scale);
+        self.ground(&mut canvas, frame, &plan, &scale);
         canvas.clipped("inside", [frame.left, frame.top], [width, height], |canvas| self.route(canvas, &frame, &kinds));
         scale.bar(&mut canvas, [frame.left + width + 24.0, frame.top], height);
         marks::legend(&mut canvas, [right, frame.top + 8.0], &legend);
@@ -101,7 +108,10 @@ impl Landscape {
 
     fn check(&self) -> Result<(), FigureError> {
         let figure = &self.name;
-        grid(figure, self.counts, self.size, ["value", "values"], &self.values)?;
+        some(figure, "values", self.values.len())?;
+        count(figure, "values", self.counts[0].saturating_mul(self.counts[1]), self.values.len())?;
+        finite(figure, "value", self.values.iter().copied())?;
+        positive(figure, "side", self.size)?;
         finite(figure, "origin", self.origin)?;
         finite(figure, "coordinate of the path", self.path.iter().flat_map(|visit| visit.place))?;
         finite(figure, "coordinate of the goal", self.goal.iter().flat_map(|goal| goal.1))?;
@@ -110,29 +120,14 @@ impl Landscape {
     }
 
     /// Levels, contour lines and axes.
-    fn ground(&self, canvas: &mut Canvas, frame: &Frame, scale: &ColourScale) {
-        let last = self.counts.map(|nodes| (nodes - 1) as f64);
-        let place = |[i, j]: [f64; 2]| frame.place([i / last[0], j / last[1]]);
-        let lattice = Lattice { counts: self.counts, values: &self.values };
-        fill(canvas, lattice, scale, place);
-        let axis = |index: usize| {
-            let ends = [self.origin[index], self.origin[index] + self.size[index]];
-            Axis::linear(&self.axes[index], "", ends, 0.0, 6)
-        };
-        frame.axes(canvas, &axis(0), &axis(1), Parts { left: ROOM_LEFT, grid: false });
+    fn ground(&self, canvas: &mut Canvas, frame: Frame, plan: &Plan<'_>, scale: &ColourScale) {
+        let places = plan.places(frame);
+        let field = Field { places: &places, faces: &plan.faces, values: &self.values };
+        fill(canvas, field, scale);
+        plan.axes(canvas, frame, &places, &self.axes);
         let [low, high] = scale.axis.ends();
         for level in scale.levels() {
-            let pieces = contour(lattice, low + level * (high - low));
-            let path: String = pieces
-                .iter()
-                .map(|[from, to]| {
-                    let ([x1, y1], [x2, y2]) = (place(*from), place(*to));
-                    format!("M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}")
-                })
-                .collect();
-            if !path.is_empty() {
-                canvas.raw(&format!("<path d=\"{path}\" fill=\"none\" stroke=\"#ffffff\" stroke-width=\"0.3\"/>\n"));
-            }
+            canvas.lines(&contour(field, low + level * (high - low)), Stroke::solid("#ffffff", 0.3));
         }
     }
 

@@ -1,15 +1,18 @@
-//! Colour scales in steps, and values on a grid drawn with them.
+//! Colour scales in steps, and values on triangles and quadrilaterals drawn with them.
 //!
-//! Inside a cell the values are linear on the four triangles between its corners and its middle, which has the mean
-//! value: the area above a level is then a polygon per triangle, without ambiguous cases.
+//! Inside a quadrilateral the values are linear on the four triangles between its sides and its middle, which has the
+//! mean value: the area above a level is then a polygon per triangle, without ambiguous cases.
 
 use super::canvas::INK;
 use super::canvas::{Canvas, LABEL, Place, Stroke};
 use super::colours;
+use super::regions::{Corner, around, borders, mean, ring};
 use super::scale::{Axis, Tick, extent};
 
 /// About the number of colours of a scale.
 const STEPS: usize = 24;
+/// Most changes of colour inside faces, counted over all faces: some 10 bytes each. Beyond, the steps become coarser.
+const MAX_CHANGES: usize = 60_000;
 
 /// One colour scale for all values of a figure, in steps whose ends are multiples of a round number.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,10 +21,11 @@ pub(super) struct ColourScale {
     levels: Vec<f64>,
 }
 
-/// A grid of values: n₁ × n₂ at equal distances, index i·n₂ + j.
+/// Values of points on the drawing, with faces that have the same sense of rotation there.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lattice<'a> {
-    pub counts: [usize; 2],
+pub(super) struct Field<'a> {
+    pub places: &'a [Place],
+    pub faces: &'a [Vec<usize>],
     pub values: &'a [f64],
 }
 
@@ -42,18 +46,17 @@ impl ColourScale {
         &self.levels
     }
 
-    /// Colour between level k − 1 and level k.
-    pub fn step_colour(&self, step: usize) -> String {
+    /// Colour of a number of steps from the one that begins at level k − 1.
+    fn colour(&self, step: usize, count: usize) -> String {
         let end =
             |index: Option<usize>, outside: f64| index.and_then(|i| self.levels.get(i)).copied().unwrap_or(outside);
-        let (low, high) = (end(step.checked_sub(1), 0.0), end(Some(step), 1.0));
+        let (low, high) = (end(step.checked_sub(1), 0.0), end(Some(step + count - 1), 1.0));
         colours::colour(0.5 * (low + high))
     }
 
-    /// The number of the step a value belongs to.
-    pub fn step(&self, value: f64) -> usize {
-        let share = self.axis.share(value).unwrap_or(0.0);
-        self.levels.iter().filter(|level| **level <= share).count()
+    /// The number of the step a share of the scale belongs to.
+    fn step(&self, share: f64) -> usize {
+        self.levels.partition_point(|level| *level <= share)
     }
 
     /// A bar with the colours, labels at its right and the title above.
@@ -66,7 +69,7 @@ impl ColourScale {
             let high = self.levels.get(step).copied().unwrap_or(1.0);
             // A little more than a step, so that no line is seen between two.
             let more = if step == 0 { 0.0 } else { 0.4 };
-            canvas.rectangle([left, foot(high)], [WIDTH, foot(low) - foot(high) + more], &self.step_colour(step));
+            canvas.rectangle([left, foot(high)], [WIDTH, foot(low) - foot(high) + more], &self.colour(step, 1));
         }
         let corners = [[left, top], [left + WIDTH, top], [left + WIDTH, top + height], [left, top + height]];
         canvas.outline(&corners, Stroke::solid(INK, 0.8));
@@ -83,121 +86,82 @@ impl ColourScale {
     }
 }
 
-/// Values filled with the colours of a scale; `place` maps (i, j), also between nodes, to the drawing.
-pub(super) fn fill(canvas: &mut Canvas, lattice: Lattice, scale: &ColourScale, place: impl Fn([f64; 2]) -> Place) {
-    let shares: Vec<f64> = lattice.values.iter().map(|value| scale.axis.share(*value).unwrap_or(0.0)).collect();
-    let (lowest, highest) = extent(shares.iter().copied()).unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
-    let shares = Lattice { counts: lattice.counts, values: &shares };
-    let all = [f64::NEG_INFINITY].into_iter().chain(scale.levels().iter().copied());
-    for (step, level) in all.enumerate() {
-        let next = scale.levels().get(step).copied().unwrap_or(f64::INFINITY);
-        // Steps below all values would be painted over, steps above all values are empty.
-        if next > lowest && level <= highest {
-            let areas = above(shares, level);
-            let placed: Vec<Vec<Place>> = areas.iter().map(|area| corners(area.iter().map(|p| place(*p)))).collect();
-            canvas.area(&scale.step_colour(step), placed.iter().map(Vec::as_slice));
-        }
-    }
-}
+/// A corner with its value.
+type Valued = (Corner, f64);
 
-/// A closed polygon without the points that lie on straight lines between their neighbours.
-fn corners(polygon: impl Iterator<Item = Place>) -> Vec<Place> {
-    /// Distance from a line that is not seen, points.
-    const UNSEEN: f64 = 0.02;
-    let mut kept: Vec<Place> = Vec::new();
-    for place in polygon {
-        while let [.., a, b] = kept[..] {
-            let (along, length) = ([place[0] - a[0], place[1] - a[1]], (place[0] - a[0]).hypot(place[1] - a[1]));
-            let across = along[0] * (b[1] - a[1]) - along[1] * (b[0] - a[0]);
-            let between = along[0] * (b[0] - a[0]) + along[1] * (b[1] - a[1]);
-            if across.abs() > UNSEEN * length || !(0.0..=length * length).contains(&between) {
-                break;
-            }
-            kept.pop();
-        }
-        kept.push(place);
+/// Values filled with the colours of a scale.
+pub(super) fn fill(canvas: &mut Canvas, field: Field, scale: &ColourScale) {
+    let shares: Vec<f64> = field.values.iter().map(|value| scale.axis.share(*value).unwrap_or(0.0)).collect();
+    let field = Field { values: &shares, ..field };
+    let ranges: Vec<(f64, f64)> = field.faces.iter().map(|face| field.range(face)).collect();
+    let Some((lowest, highest)) = extent(ranges.iter().flat_map(|(low, high)| [*low, *high])) else { return };
+    let changes: usize = ranges.iter().map(|(low, high)| scale.step(*high) - scale.step(*low)).sum();
+    let stride = 1 + changes / MAX_CHANGES;
+    // Steps below all values would be painted over, steps above all values are empty.
+    let first = scale.step(lowest) / stride * stride;
+    for step in (first..=scale.step(highest)).step_by(stride) {
+        let level = if step == first { f64::NEG_INFINITY } else { scale.levels[step - 1] };
+        let next = scale.levels.get(step + stride - 1).copied().unwrap_or(f64::INFINITY);
+        let borders = borders(field.above(&ranges, level, next));
+        canvas.area(&scale.colour(step, stride), borders.iter().map(Vec::as_slice));
     }
-    kept
 }
 
 /// Lines on which the values have a level, in pieces.
-pub(super) fn contour(lattice: Lattice, level: f64) -> Vec<[[f64; 2]; 2]> {
-    let mut pieces = Vec::new();
-    for (i, j) in lattice.cells() {
-        for triangle in lattice.triangles(i, j) {
-            let mut ends = Vec::with_capacity(2);
-            for edge in 0..3 {
-                let (a, b) = (triangle[edge], triangle[(edge + 1) % 3]);
-                if (a.1 >= level) != (b.1 >= level) {
-                    ends.push(between(a, b, level));
-                }
-            }
-            if let [first, second] = ends[..] {
-                pieces.push([first, second]);
-            }
+pub(super) fn contour(field: Field, level: f64) -> Vec<Vec<Place>> {
+    let crossing = |triangle: [Valued; 3]| {
+        let cut = around(&triangle).filter(|(a, b)| (a.1 >= level) != (b.1 >= level));
+        cut.map(|(a, b)| between(a, b, level).1).collect::<Vec<Place>>()
+    };
+    let pieces = (0..field.faces.len()).flat_map(|face| field.triangles(face)).map(crossing);
+    pieces.filter(|piece| !piece.is_empty()).collect()
+}
+
+/// The place on a side where the values have a level.
+fn between((a, value): Valued, (b, other): Valued, level: f64) -> Corner {
+    let share = (level - value) / (other - value);
+    let place = [0, 1].map(|axis| a.1[axis] + share * (b.1[axis] - a.1[axis]));
+    let (from, to) = (a.0[0], b.0[0]);
+    ([from.min(to), from.max(to)], place)
+}
+
+impl Field<'_> {
+    fn range(&self, face: &[usize]) -> (f64, f64) {
+        extent(face.iter().map(|&point| self.values[point])).unwrap_or((0.0, 0.0))
+    }
+
+    /// The triangles on which values are linear.
+    fn triangles(&self, index: usize) -> Vec<[Valued; 3]> {
+        let face = &self.faces[index];
+        let values = face.iter().map(|&point| self.values[point]);
+        let corners = ring(face, self.places);
+        let middle: Vec<Place> = corners.iter().map(|corner| corner.1).collect();
+        // Numbers beyond those of the points are free for the middles.
+        let middle = ([self.places.len() + index; 2], mean(&middle));
+        let average = values.clone().sum::<f64>() / face.len() as f64;
+        let ring: Vec<Valued> = corners.into_iter().zip(values).collect();
+        match ring[..] {
+            [a, b, c] => vec![[a, b, c]],
+            _ => around(&ring).map(|(a, b)| [a, b, (middle, average)]).collect(),
         }
     }
-    pieces
-}
 
-type Corner = ([f64; 2], f64);
-
-fn between(a: Corner, b: Corner, level: f64) -> [f64; 2] {
-    let share = (level - a.1) / (b.1 - a.1);
-    std::array::from_fn(|axis| a.0[axis] + share * (b.0[axis] - a.0[axis]))
-}
-
-impl Lattice<'_> {
-    fn at(&self, i: usize, j: usize) -> f64 {
-        self.values[i * self.counts[1] + j]
-    }
-
-    fn cells(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let [n1, n2] = self.counts;
-        (0..n1 - 1).flat_map(move |i| (0..n2 - 1).map(move |j| (i, j)))
-    }
-
-    fn triangles(&self, i: usize, j: usize) -> [[Corner; 3]; 4] {
-        let corner = |di: usize, dj: usize| ([(i + di) as f64, (j + dj) as f64], self.at(i + di, j + dj));
-        let ring = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-        let mean = ring.iter().map(|corner| 0.25 * corner.1).sum();
-        let middle = ([i as f64 + 0.5, j as f64 + 0.5], mean);
-        std::array::from_fn(|k| [ring[k], ring[(k + 1) % 4], middle])
-    }
-}
-
-/// Areas where the values are at least a level: runs of whole cells along the second index, and parts of triangles.
-fn above(lattice: Lattice, level: f64) -> Vec<Vec<[f64; 2]>> {
-    let mut areas = Vec::new();
-    let [n1, n2] = lattice.counts;
-    for i in 0..n1 - 1 {
-        let mut run: Option<usize> = None;
-        for j in 0..n2 {
-            let corners = |j: usize| [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
-            let values = || corners(j).map(|(a, b)| lattice.at(a, b));
-            let whole = j + 1 < n2 && values().iter().all(|value| *value >= level);
-            match (whole, run) {
-                (true, None) => run = Some(j),
-                (false, Some(first)) => {
-                    // All nodes along the run: it need not be straight where it is placed.
-                    let side = |i: usize| (first..=j).map(move |node| [i as f64, node as f64]);
-                    areas.push(side(i + 1).chain(side(i).rev()).collect());
-                    run = None;
-                }
-                _ => {}
+    /// Areas where the values are at least a level: whole faces, and parts of triangles; without the faces that are
+    /// covered by the areas of the next level.
+    fn above(&self, ranges: &[(f64, f64)], level: f64, next: f64) -> impl Iterator<Item = Vec<Corner>> {
+        let some = move |(low, high): (f64, f64)| high >= level && low < next;
+        ranges.iter().enumerate().filter(move |(_, range)| some(**range)).flat_map(move |(index, range)| {
+            if range.0 >= level {
+                return vec![ring(&self.faces[index], self.places)];
             }
-            if j + 1 < n2 && !whole && values().iter().any(|value| *value >= level) {
-                areas.extend(lattice.triangles(i, j).iter().filter_map(|triangle| part_above(triangle, level)));
-            }
-        }
+            self.triangles(index).iter().filter_map(|triangle| part_above(triangle, level)).collect()
+        })
     }
-    areas
 }
 
-fn part_above(triangle: &[Corner; 3], level: f64) -> Option<Vec<[f64; 2]>> {
+fn part_above(triangle: &[Valued; 3], level: f64) -> Option<Vec<Corner>> {
     let mut part = Vec::with_capacity(4);
-    for edge in 0..3 {
-        let (a, b) = (triangle[edge], triangle[(edge + 1) % 3]);
+    for (a, b) in around(triangle) {
         if a.1 >= level {
             part.push(a.0);
         }
@@ -211,6 +175,7 @@ fn part_above(triangle: &[Corner; 3], level: f64) -> Option<Vec<[f64; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid_faces;
 
     fn size(area: &[[f64; 2]]) -> f64 {
         let turned = area.iter().zip(area.iter().cycle().skip(1));
@@ -219,31 +184,29 @@ mod tests {
 
     #[test]
     fn the_area_above_a_level_of_a_linear_field_is_exact() {
-        // x over a 4 × 4 square: above 1.5 lies 2.5/4 of it.
-        let values: Vec<f64> = (0..25).map(|node| f64::from(node / 5)).collect();
-        let lattice = Lattice { counts: [5, 5], values: &values };
-        let total: f64 = above(lattice, 1.5).iter().map(|area| size(area)).sum();
-        assert!((total - 10.0).abs() < 1e-12, "{total}");
-        assert!(above(lattice, 4.5).is_empty() && above(lattice, f64::NEG_INFINITY).len() == 4);
-        let length: f64 = contour(lattice, 1.5).iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum();
+        // x over a 4 × 4 square with a quadrilateral in two triangles: above 1.5 lies 2.5/4 of it.
+        let places: Vec<Place> = (0..25).map(|node| [f64::from(node / 5), f64::from(node % 5)]).collect();
+        let values: Vec<f64> = places.iter().map(|place| place[0]).collect();
+        let mut faces = grid_faces([5, 5]);
+        let [a, b, c, d] = faces[5][..] else { panic!("a quadrilateral") };
+        faces[5] = vec![a, b, c];
+        faces.push(vec![a, c, d]);
+        let field = Field { places: &places, faces: &faces, values: &values };
+        let ranges: Vec<(f64, f64)> = faces.iter().map(|face| field.range(face)).collect();
+        let areas = |level: f64| borders(field.above(&ranges, level, f64::INFINITY));
+        assert_eq!(areas(1.5).len(), 1);
+        assert!((size(&areas(1.5)[0]) - 10.0).abs() < 1e-12, "{:?}", areas(1.5));
+        assert!(areas(4.5).is_empty() && size(&areas(f64::NEG_INFINITY)[0]) == 16.0);
+        let length: f64 =
+            contour(field, 1.5).iter().map(|line| (line[0][0] - line[1][0]).hypot(line[0][1] - line[1][1])).sum();
         assert!((length - 4.0).abs() < 1e-12, "{length}");
-    }
-
-    #[test]
-    fn straight_runs_keep_their_corners_only_and_bent_ones_their_nodes() {
-        let run = |bend: f64| {
-            corners((0..=4).map(|j| [f64::from(j), bend * f64::from(j * j)]).chain([[4.0, -9.0], [0.0, -9.0]]))
-        };
-        assert_eq!(run(0.0), [[0.0, 0.0], [4.0, 0.0], [4.0, -9.0], [0.0, -9.0]]);
-        assert_eq!(run(0.5).len(), 7);
-        assert_eq!(corners([[0.0; 2]; 3].into_iter()).len(), 2);
     }
 
     #[test]
     fn a_scale_covers_all_values_and_begins_at_zero_where_that_is_near() {
         let scale = ColourScale::new("p", "MPa", [3.0, 14_809.0]);
         assert_eq!(scale.axis.ends(), [0.0, 14_809.0]);
-        assert_eq!((scale.step(0.0), scale.step(14_809.0)), (0, scale.levels().len()));
+        assert_eq!((scale.step(0.0), scale.step(1.0)), (0, scale.levels().len()));
         assert_eq!(ColourScale::new("h", "mm", [45.0, 50.0]).axis.ends(), [45.0, 50.0]);
     }
 }

@@ -3,9 +3,12 @@
 //! ```text
 //! numbers ─┬─ Map, Classes, Lines, LogPlot, Landscape, Convergence ─┬─ Figure ─┬─ svg
 //!          └─ Solids, Surfaces, Sketch ───────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
-//! scale (ticks), chart (axes), panel_layout (panels), marks (legends), nodes (texts over nodes), levels (filled areas),
-//! oblique (bodies), canvas (SVG text)
+//! scale (ticks), chart (axes), panel_layout (panels), marks (legends), plan (meshes in a plane), levels (areas),
+//! view (projection), layers (what covers what), oblique (bodies), regions (borders of areas), canvas (SVG text)
 //! ```
+//! Bodies, surfaces and plans are points with triangles and quadrilaterals between them; [`grid_faces`] and
+//! [`box_faces`] are those of structured grids.
+//!
 //! The package knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes. In
 //! titles, captions and units `^{…}` is a superscript. The font of PNG files has Latin and Greek letters, ₀ … ₉, ∂, √,
 //! ∞ and the usual signs; ⟨ ⟩ ‖ ∇ → come from a second one.
@@ -17,33 +20,39 @@ mod colours;
 mod convergence;
 mod error;
 mod figure;
+mod grids;
 mod landscape;
+mod layers;
 mod levels;
 mod lines;
 mod log_plot;
 mod map;
 mod marks;
-mod nodes;
 mod oblique;
 pub mod page;
 mod panel_layout;
 mod panels;
+mod plan;
 #[cfg(feature = "png")]
 mod png;
+mod regions;
 mod scale;
 mod sketch;
 mod solid;
 mod surfaces;
+mod view;
 
 pub use classes::{ClassPanel, Classes};
 pub use convergence::{Convergence, Step};
 pub use error::FigureError;
 pub use figure::Figure;
+pub use grids::{box_faces, grid_faces};
 pub use landscape::{Landscape, Visit};
 pub use lines::{Curve, LinePanel, Lines};
 pub use log_plot::{LogPlot, Series};
 pub use map::{ColourScales, Map, MapPanel};
 pub use scale::{nice_below, number};
 pub use sketch::{Sign, Sketch, SketchBody, SketchMark};
-pub use solid::{SolidBlock, SolidPanel, Solids};
+pub use solid::{SolidBody, SolidPanel, Solids};
 pub use surfaces::{SurfacePanel, Surfaces};
+pub use view::View;

@@ -1,8 +1,8 @@
-//! Where the panels of plane grids stand: side by side, each to scale, two lines of text above.
+//! Where the panels of plans stand: side by side, each to scale, two lines of text above.
 
 use super::canvas::{Canvas, LABEL, TITLE_ROOM, text_width};
 use super::chart::{Frame, ROOM_BELOW};
-use super::nodes::PlaneGrid;
+use super::plan::Plan;
 
 /// Longer side of a panel, points.
 const SIDE: f64 = 280.0;
@@ -26,15 +26,15 @@ pub(super) struct PanelLayout {
 }
 
 impl PanelLayout {
-    /// Panels over some grids, each with room for its captions and for something behind it.
-    pub fn new(grids: &[PlaneGrid], captions: &[[String; 2]], behind: f64) -> Self {
+    /// Panels of some plans, each with room for its captions and for something behind it.
+    pub fn new(plans: &[Plan<'_>], captions: &[[String; 2]], behind: f64) -> Self {
         let (mut left, mut foot) = (16.0, TOP);
         let mut frames = Vec::new();
         let mut ends = Vec::new();
-        for (grid, captions) in grids.iter().zip(captions) {
+        for (plan, captions) in plans.iter().zip(captions) {
             // On a narrow page a panel stands alone, so that every panel has labels of its own.
             left += ROOM_LEFT;
-            let [width, height] = sides(grid.size);
+            let [width, height] = sides(plan.size);
             frames.push(Frame { left, top: TOP, width, height });
             let text = captions.iter().fold(0.0_f64, |width, text| width.max(text_width(text, LABEL)));
             ends.push(left + width.max(text));

@@ -2,23 +2,24 @@
 
 use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, TITLE_ROOM, text_width};
 use super::colours::curve;
-use super::error::{FigureError, cells, count, finite, some};
+use super::error::{FigureError, finite, mesh, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
-use super::oblique::{Point, Sheet, View, bounds, paint};
+use super::oblique::{Skin, paint};
 use super::panels::directions;
-use super::solid::faces;
+use super::view::{Point, Projection, View};
 
-/// Bodies seen from the front, the right and above, with marks that letters join to their rows in the legend.
+/// Bodies in space, with marks that letters join to their rows in the legend.
 ///
 /// ```
-/// use figures::{Sign, Sketch, SketchBody, SketchMark};
+/// use figures::{Sign, Sketch, SketchBody, SketchMark, View, box_faces};
 /// let corner = |node: u8| [f64::from(node >> 2 & 1), f64::from(node >> 1 & 1), f64::from(node & 1)];
 /// let sketch = Sketch {
 ///     name: "sketch".into(),
 ///     title: "A loaded cube".into(),
 ///     axes: ["x₁ (1 mm)".into(), "x₂ (1 mm)".into(), "x₃ (1 mm)".into()],
-///     bodies: vec![SketchBody { nodes: [2, 2, 2], points: (0..8).map(corner).collect() }],
+///     bodies: vec![SketchBody { points: (0..8).map(corner).collect(), faces: box_faces([2, 2, 2]) }],
+///     view: View::default(),
 ///     marks: vec![SketchMark {
 ///         sign: Sign::Arrow,
 ///         text: "traction (0, 0, −5) MPa".into(),
@@ -37,21 +38,23 @@ pub struct Sketch {
     pub title: String,
     /// What is written at the arrows of the three axes: names, lengths.
     pub axes: [String; 3],
-    /// The bodies; they must not interlock.
+    /// The bodies. Edges and outlines are drawn; up to 1500 faces to be seen, the sides of the faces as well.
     pub bodies: Vec<SketchBody>,
+    /// The direction from which they are seen.
+    pub view: View,
     /// What acts on them, in the order of the letters.
     pub marks: Vec<SketchMark>,
     /// Further lines of the legend.
     pub notes: Vec<String>,
 }
 
-/// A block of points, neighbours in the order of the axes (right-handed), or a surface.
+/// The skin of a body. A skin that is open, such as a surface, is seen from both sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SketchBody {
-    /// Points n₁, n₂, n₃ along the axes: at least 2, or n₃ = 1 for a surface.
-    pub nodes: [usize; 3],
-    /// Where the points are, index (i·n₂ + j)·n₃ + k.
+    /// Where the points are; any unit of length.
     pub points: Vec<[f64; 3]>,
+    /// Triangles and quadrilaterals between points, counterclockwise seen from outside.
+    pub faces: Vec<Vec<usize>>,
 }
 
 /// How a mark is drawn.
@@ -86,25 +89,29 @@ impl Sketch {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without bodies; unless every body has as many points as its nodes say and all numbers are
-    /// finite.
+    /// [`FigureError`] without bodies or faces; unless every face joins three or four different points and all numbers
+    /// are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "bodies", self.bodies.len())?;
-        for body in &self.bodies {
-            let [n1, n2, n3] = body.nodes;
-            let axes = if n3 == 1 { &body.nodes[..2] } else { &body.nodes[..] };
-            cells(&self.name, axes)?;
-            count(&self.name, "points of a body", n1.saturating_mul(n2).saturating_mul(n3), body.points.len())?;
+        for (index, body) in self.bodies.iter().enumerate() {
+            mesh(&self.name, &format!("body {index}"), &body.points, &body.faces)?;
         }
-        finite(&self.name, "coordinate", self.points().flatten())?;
-        let [across, up] = bounds(self.points());
+        for (index, mark) in self.marks.iter().enumerate() {
+            finite(
+                &self.name,
+                &format!("mark {index}, coordinate"),
+                mark.lines.as_flattened().as_flattened().to_vec(),
+            )?;
+        }
+        let [across, up] = self.view.bounds(self.points());
         let extents = [across, up].map(|[low, high]| high - low);
         let largest = extents[0].max(extents[1]);
         let points = if largest > 0.0 { SIDE / largest } else { 1.0 };
         let size = extents.map(|extent| points * extent);
         // Letters stand outside the drawing and need room of their own.
         let room = 1.8 * LABEL;
-        let view = View { origin: [MARGIN + room - points * across[0], TOP + room - points * up[0]], scale: points };
+        let origin = [MARGIN + room - points * across[0], TOP + room - points * up[0]];
+        let projection = Projection { view: self.view, origin, scale: points };
         let (foot, right) = (TOP + size[1] + 2.0 * room, MARGIN + size[0] + 2.0 * room + 20.0);
         let texts = self.marks.iter().map(|mark| &mark.text).chain(&self.notes);
         let legend = texts.fold(0.0_f64, |width, text| width.max(text_width(text, LABEL)));
@@ -113,13 +120,13 @@ impl Sketch {
         let mut canvas = Canvas::new(width, (foot + 74.0).max(TOP + room + rows * ROW + MARGIN));
         canvas.text([MARGIN, 22.0], TITLE, &self.title);
         let marks = || self.marks.iter().enumerate();
-        let sheets: Vec<Vec<Sheet>> = self.bodies.iter().map(SketchBody::sheets).collect();
-        paint(&mut canvas, &view, &sheets, &ColourScale::new("", "", []));
-        marks().for_each(|(index, mark)| mark.draw(&mut canvas, &view, index));
-        marks().for_each(|(index, mark)| mark.write_letter(&mut canvas, &view, index));
+        let skins = self.bodies.iter().map(|body| Skin::new(&body.points, &body.faces, None)).collect::<Vec<Skin>>();
+        paint(&mut canvas, &projection, &skins, &ColourScale::new("", "", []));
+        marks().for_each(|(index, mark)| mark.draw(&mut canvas, &projection, index));
+        marks().for_each(|(index, mark)| mark.write_letter(&mut canvas, &projection, index));
         canvas.part([0.0, TITLE_ROOM], [right - 4.0, canvas.height]);
         canvas.part([right - 4.0, TITLE_ROOM], [canvas.width, TOP + room + (rows + 0.5) * ROW]);
-        directions(&mut canvas, &self.axes, [MARGIN + 8.0, foot + 52.0]);
+        directions(&mut canvas, self.view, &self.axes, [MARGIN, foot + 52.0]);
         self.legend(&mut canvas, [right, TOP + room]);
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
@@ -161,19 +168,10 @@ fn triangle(canvas: &mut Canvas, [base, tip]: [Place; 2], colour: &str) {
     canvas.outline(&corners, Stroke::solid(INK, 0.6));
 }
 
-impl SketchBody {
-    fn sheets(&self) -> Vec<Sheet> {
-        match self.nodes {
-            [n1, n2, 1] => vec![Sheet { counts: [n1, n2], points: self.points.clone(), values: None }],
-            nodes => faces(nodes, &self.points, None),
-        }
-    }
-}
-
 impl SketchMark {
-    fn draw(&self, canvas: &mut Canvas, view: &View, index: usize) {
+    fn draw(&self, canvas: &mut Canvas, projection: &Projection, index: usize) {
         for line in &self.lines {
-            let line = line.map(|point| view.place(point));
+            let line = line.map(|point| projection.place(point));
             match self.sign {
                 Sign::Arrow => canvas.arrow(line, Stroke::solid(curve(index), 1.8)),
                 Sign::Support => triangle(canvas, line, curve(index)),
@@ -182,56 +180,12 @@ impl SketchMark {
     }
 
     /// The letter behind the first point of the pair in the middle.
-    fn write_letter(&self, canvas: &mut Canvas, view: &View, index: usize) {
+    fn write_letter(&self, canvas: &mut Canvas, projection: &Projection, index: usize) {
         let Some(line) = self.lines.get(self.lines.len() / 2) else { return };
-        let [tail, tip] = line.map(|point| view.place(point));
+        let [tail, tip] = line.map(|point| projection.place(point));
         let away = [tail[0] - tip[0], tail[1] - tip[1]];
         let length = away[0].hypot(away[1]);
         let away = if length > 0.0 { away.map(|part| part / length) } else { [0.0, -1.0] };
         canvas.rimmed([tail[0] + 10.0 * away[0], tail[1] + 10.0 * away[1]], LABEL, &letter(index));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sketch(nodes: [usize; 3]) -> Sketch {
-        let points = (0..nodes.iter().product::<usize>()).map(|node| {
-            [node / (nodes[1] * nodes[2]), node / nodes[2] % nodes[1], node % nodes[2]].map(|index| index as f64)
-        });
-        let mark =
-            |sign| SketchMark {
-                sign, text: "u₁ = 0 & more".into(), lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]]
-            };
-        Sketch {
-            name: "s".into(),
-            title: "t".into(),
-            axes: ["x".into(), "y".into(), "z".into()],
-            bodies: vec![SketchBody { nodes, points: points.collect() }],
-            marks: vec![mark(Sign::Support), mark(Sign::Arrow)],
-            notes: vec!["note".into()],
-        }
-    }
-
-    #[test]
-    fn every_mark_has_a_letter_at_its_place_and_in_the_legend() {
-        for nodes in [[2, 2, 2], [3, 3, 1]] {
-            let svg = sketch(nodes).figure().expect("numbers").svg;
-            assert_eq!((svg.matches(">A<").count(), svg.matches(">B<").count()), (2, 2));
-            assert!(svg.contains("u₁ = 0 &amp; more") && svg.contains(">note<"));
-        }
-        assert_eq!([0, 25, 26].map(letter), ["A", "Z", "A1"]);
-    }
-
-    #[test]
-    fn bodies_that_cannot_be_drawn_are_refused() {
-        assert!(matches!(sketch([1, 2, 2]).figure(), Err(FigureError::Number { .. })));
-        let mut few = sketch([2, 2, 2]);
-        few.bodies[0].points.pop();
-        assert!(matches!(few.figure(), Err(FigureError::Count { .. })));
-        let mut infinite = sketch([2, 2, 2]);
-        infinite.marks[0].lines[0][0][1] = f64::NAN;
-        assert!(matches!(infinite.figure(), Err(FigureError::Number { .. })));
     }
 }

@@ -1,21 +1,27 @@
-//! Heights over rectangles as surfaces in space side by side, on one colour scale.
+//! Heights over a plane as surfaces in space side by side, on one colour scale.
 
-use super::error::{FigureError, grid, some};
+use super::error::{FigureError, finite, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
-use super::oblique::{Point, Sheet};
+use super::oblique::Skin;
 use super::panels::{Panel, PanelRow};
+use super::plan::Plan;
+use super::regions::{around, sides};
 use super::scale::{behind, extent, nice_below, number};
+use super::view::{Point, View};
 
-/// Heights over rectangles, seen from the front, the right and above; magnified so that small differences are seen.
+/// Heights over a plane, seen from the front, the right and above; magnified so that small differences are seen.
 ///
 /// ```
-/// use figures::{SurfacePanel, Surfaces};
+/// use figures::{SurfacePanel, Surfaces, grid_faces};
 /// let panel = |caption: &str, peak: f64| SurfacePanel {
 ///     caption: caption.into(),
-///     counts: [3, 2],
-///     size: [100.0, 50.0],
-///     heights: vec![45.0, 45.0, peak, 45.0, 45.0, 45.0],
+///     points: vec![
+///         [0.0, 0.0, 45.0], [0.0, 50.0, 45.0],
+///         [50.0, 0.0, peak], [50.0, 50.0, 45.0],
+///         [100.0, 0.0, 45.0], [100.0, 50.0, 45.0],
+///     ],
+///     faces: grid_faces([3, 2]),
 /// };
 /// let surfaces = Surfaces {
 ///     name: "surface".into(),
@@ -42,17 +48,15 @@ pub struct Surfaces {
     pub panels: Vec<SurfacePanel>,
 }
 
-/// One grid of heights.
+/// One surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfacePanel {
     /// What distinguishes it from the other panels.
     pub caption: String,
-    /// Nodes n₁, n₂ along both axes, at least 2.
-    pub counts: [usize; 2],
-    /// Lengths between the first and the last node along both axes, > 0.
-    pub size: [f64; 2],
-    /// One height per node, index i·n₂ + j with i along the first axis.
-    pub heights: Vec<f64>,
+    /// The points; the third coordinate is the height.
+    pub points: Vec<[f64; 3]>,
+    /// Triangles and quadrilaterals between points, side by side seen from above.
+    pub faces: Vec<Vec<usize>>,
 }
 
 /// Differences of the heights are drawn at most as large as this share of the longest side.
@@ -74,41 +78,42 @@ impl Surfaces {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a height per node, sides of positive
-    /// length, and all numbers are finite.
+    /// [`FigureError`] without panels or faces; unless every face joins three or four different points, the points of a
+    /// panel have an extent along both axes, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
-        for panel in &self.panels {
-            grid(&self.name, panel.counts, panel.size, ["height", "heights of a panel"], &panel.heights)?;
-        }
-        let heights = || self.panels.iter().flat_map(|panel| panel.heights.iter().copied());
-        let scale = ColourScale::new(&self.quantity, &self.unit, heights());
-        let (low, high) = extent(heights()).unwrap_or((0.0, 0.0));
-        let longest = self.panels.iter().flat_map(|panel| panel.size).fold(0.0, f64::max);
+        let plans: Vec<Vec<[f64; 2]>> = self.panels.iter().map(SurfacePanel::plan).collect();
+        let plans = plans.iter().zip(&self.panels).enumerate().map(|(index, (plan, panel))| {
+            finite(&self.name, &format!("panel {index}, x₃ of point"), panel.heights())?;
+            Plan::new(&self.name, &format!("panel {index}"), plan, &panel.faces)
+        });
+        let plans = plans.collect::<Result<Vec<Plan<'_>>, FigureError>>()?;
+        let scale = ColourScale::new(&self.quantity, &self.unit, self.panels.iter().flat_map(SurfacePanel::heights));
+        let (low, high) = extent(self.panels.iter().flat_map(SurfacePanel::heights)).unwrap_or((0.0, 0.0));
+        let longest = plans.iter().flat_map(|plan| plan.size).fold(0.0, f64::max);
         let level = high - low <= MIN_MAGNIFIED_DIFFERENCE * low.abs().max(high.abs());
         let times = if level { 1.0 } else { nice_below(MAX_SHOWN_HEIGHT * longest / (high - low)) };
         let magnified = Magnified { less: low, times, foot: -FOOT_HEIGHT * longest };
         let (times, unit) = (number(times), behind(&self.unit));
-        let panels = self.panels.iter().map(|panel| {
-            let [low, high] =
-                extent(panel.heights.iter().copied()).map_or([0.0; 2], |(low, high)| [low, high]).map(number);
+        let panels = self.panels.iter().zip(&plans).map(|(panel, plan)| {
+            let [low, high] = extent(panel.heights()).map_or([0.0; 2], |(low, high)| [low, high]).map(number);
             Panel {
                 captions: [panel.caption.clone(), format!("{low} to {high}{unit}")],
-                bodies: vec![vec![panel.top(magnified)]],
-                front: panel.walls(magnified),
+                skins: panel.skins(magnified, plan).into(),
             }
         });
         let side = |index: usize| {
-            let side = self.panels[0].size[index];
+            let side = number(plans[0].size[index]);
             let name = ["x₁", "x₂"][index];
-            let same = self.panels.iter().all(|panel| panel.size[index] == side);
-            if same { format!("{name} ({}{unit})", number(side)) } else { name.to_owned() }
+            let same = plans.iter().all(|plan| number(plan.size[index]) == side);
+            if same { format!("{name} ({side}{unit})") } else { name.to_owned() }
         };
         PanelRow {
             name: &self.name,
             title: &self.title,
             axes: &[side(0), side(1), "x₃".to_owned()],
             note: &format!("heights × {times}"),
+            view: View::default(),
             scale: &scale,
             panels: panels.collect(),
         }
@@ -117,66 +122,29 @@ impl Surfaces {
 }
 
 impl SurfacePanel {
-    fn point(&self, magnified: Magnified, [i, j]: [usize; 2]) -> Point {
-        let place = [i, j];
-        let [x, y] = [0, 1].map(|axis| self.size[axis] * place[axis] as f64 / (self.counts[axis] - 1) as f64);
-        [x, y, magnified.times * (self.heights[i * self.counts[1] + j] - magnified.less)]
+    fn heights(&self) -> Vec<f64> {
+        self.points.iter().map(|point| point[2]).collect()
     }
 
-    fn top(&self, magnified: Magnified) -> Sheet {
-        let [n1, n2] = self.counts;
-        let nodes = (0..n1 * n2).map(|node| [node / n2, node % n2]);
-        Sheet {
-            counts: self.counts,
-            points: nodes.map(|node| self.point(magnified, node)).collect(),
-            values: Some(self.heights.clone()),
-        }
+    fn plan(&self) -> Vec<[f64; 2]> {
+        self.points.iter().map(|[x, y, _]| [*x, *y]).collect()
     }
 
-    /// Walls below the surface on the two sides of the rectangle that are turned towards the viewer, x₂ = 0 and x₁ =
-    /// max.
-    fn walls(&self, magnified: Magnified) -> Vec<Sheet> {
-        let [n1, n2] = self.counts;
-        let wall = |nodes: Vec<[usize; 2]>| {
-            let points = nodes.iter().flat_map(|&node| {
-                let above = self.point(magnified, node);
-                [[above[0], above[1], magnified.foot], above]
-            });
-            Sheet { counts: [nodes.len(), 2], points: points.collect(), values: None }
-        };
-        vec![wall((0..n1).map(|i| [i, 0]).collect()), wall((0..n2).map(|j| [n1 - 1, j]).collect())]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn surfaces(heights: Vec<f64>) -> Surfaces {
-        let counts = [3, heights.len() / 3];
-        Surfaces {
-            name: "s".into(),
-            title: "t".into(),
-            quantity: "h".into(),
-            unit: "mm".into(),
-            panels: vec![SurfacePanel { caption: "c".into(), counts, size: [3.0, 1.0], heights }],
-        }
-    }
-
-    #[test]
-    fn flat_surfaces_are_not_magnified_and_small_differences_are() {
-        let flat = surfaces(vec![7.0; 6]).figure().expect("numbers");
-        assert!(flat.svg.contains("heights × 1<"), "a flat surface has nothing to magnify");
-        // A difference of 0.001 may be drawn up to 0.9 high: 500 times.
-        let waved = surfaces(vec![7.0, 7.0, 7.001, 7.0, 7.0, 7.0]).figure().expect("numbers");
-        assert!(waved.svg.contains("heights × 500<"));
-        assert_eq!(waved, surfaces(vec![7.0, 7.0, 7.001, 7.0, 7.0, 7.0]).figure().expect("numbers"));
-    }
-
-    #[test]
-    fn heights_that_cannot_be_drawn_are_refused() {
-        assert!(matches!(surfaces(vec![f64::NAN; 6]).figure(), Err(FigureError::Number { index: 0, .. })));
-        assert!(matches!(surfaces(vec![1.0; 7]).figure(), Err(FigureError::Count { .. })));
-        assert!(matches!(surfaces(vec![1.0; 3]).figure(), Err(FigureError::Number { .. })));
+    /// The surface, and below its sides walls, which are grey.
+    fn skins(&self, magnified: Magnified, plan: &Plan<'_>) -> [Skin; 2] {
+        let raised = |[x, y, height]: &Point| [*x, *y, magnified.times * (height - magnified.less)];
+        let top: Vec<Point> = self.points.iter().map(raised).collect();
+        let foot = top.iter().map(|[x, y, _]| [*x, *y, magnified.foot]);
+        let walls = top.iter().copied().chain(foot).collect();
+        let sides = sides(&plan.faces);
+        let ends =
+            plan.faces.iter().flat_map(|face| around(face)).filter(|(a, b)| sides[&[*a.min(b), *a.max(b)]].len() == 1);
+        // Counterclockwise faces have the outside at the right of their sides.
+        let wall = |(a, b): (usize, usize)| vec![a + top.len(), b + top.len(), b, a];
+        let faces = ends.map(wall).collect();
+        [
+            Skin { faces: plan.faces.clone(), values: Some(self.heights()), points: top, two_sided: true },
+            Skin { points: walls, faces, values: None, two_sided: false },
+        ]
     }
 }

@@ -3,7 +3,8 @@
 
 use figures::{
     ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, Landscape, LinePanel, Lines, LogPlot, Map, MapPanel,
-    Series, Sign, Sketch, SketchBody, SketchMark, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces, Visit,
+    Series, Sign, Sketch, SketchBody, SketchMark, SolidBody, SolidPanel, Solids, Step, SurfacePanel, Surfaces, View,
+    Visit, box_faces, grid_faces,
 };
 
 fn title() -> String {
@@ -51,12 +52,18 @@ fn plots() -> [Figure; 3] {
     [convergence.figure(), plot.figure(), landscape.figure()].map(|figure| figure.expect("numbers"))
 }
 
+/// n₁ × n₂ points of a rectangle, index i·n₂ + j, that begins at a place on the diagonal.
+fn rectangle([n1, n2]: [usize; 2], origin: f64, size: [f64; 2]) -> Vec<[f64; 2]> {
+    let along = |axis: usize, share: f64| origin + size[axis] * share;
+    let point = |node: usize| [(node / n2) as f64 / (n1 - 1) as f64, (node % n2) as f64 / (n2 - 1) as f64];
+    (0..n1 * n2).map(point).map(|[s, t]| [along(0, s), along(1, t)]).collect()
+}
+
 fn map(scales: ColourScales, contours: bool) -> Figure {
     let panel = |caption: &str, origin: f64| MapPanel {
         caption: caption.into(),
-        counts: [3, 2],
-        origin: [origin; 2],
-        size: [100.0, 50.0],
+        points: rectangle([3, 2], origin, [100.0, 50.0]),
+        faces: grid_faces([3, 2]),
         values: vec![0.0, 1.0, 2.0, -3.0, 5.0, 8.0 + origin],
     };
     let map = Map {
@@ -85,9 +92,8 @@ fn lines_and_classes() -> [Figure; 2] {
     };
     let panel = ClassPanel {
         caption: "c".into(),
-        counts: [3, 2],
-        origin: [0.0; 2],
-        size: [100.0, 50.0],
+        points: rectangle([3, 2], 0.0, [100.0, 50.0]),
+        faces: grid_faces([3, 2]),
         classes: vec![0, 1, 1, 1, 0, 0],
         arrows: vec![[1.0, -2.0]; 6],
     };
@@ -104,32 +110,37 @@ fn lines_and_classes() -> [Figure; 2] {
 
 fn bodies() -> [Figure; 3] {
     let corner = |node: u8| [f64::from(node >> 2 & 1), f64::from(node >> 1 & 1), f64::from(node & 1)];
-    let block =
-        SolidBlock { nodes: [2; 3], points: (0..8).map(corner).collect(), values: (0..8).map(f64::from).collect() };
+    let points: Vec<[f64; 3]> = (0..8).map(corner).collect();
+    let faces = box_faces([2; 3]);
+    let body = SolidBody { points: points.clone(), faces: faces.clone(), values: (0..8).map(f64::from).collect() };
     let solids = Solids {
         name: "von_mises".into(),
         title: title(),
         quantity: "stress".into(),
         unit: "MPa".into(),
-        axes: ["x₁".into(), "x₂".into(), "x₃".into()],
+        axes: ["x₁ (10 mm)".into(), "x₂ (10 mm)".into(), "x₃".into()],
         note: "displacements × 20 & more".into(),
-        panels: vec![SolidPanel { caption: "<c>".into(), blocks: vec![block] }],
+        view: View::towards([-1.0, 0.0, -1.0]),
+        panels: vec![SolidPanel { caption: "<c>".into(), bodies: vec![body] }],
     };
-    let heights = vec![45.0, 45.0, 47.0, 45.0, 44.0, 45.0];
+    let heights = [45.0, 45.0, 47.0, 45.0, 44.0, 45.0];
+    let raised = rectangle([3, 2], 0.0, [100.0, 50.0]).into_iter().zip(heights).map(|([x, y], height)| [x, y, height]);
+    let surface = SurfacePanel { caption: "c".into(), points: raised.collect(), faces: grid_faces([3, 2]) };
     let surfaces = Surfaces {
         name: "surface".into(),
         title: title(),
         quantity: "height".into(),
         unit: "mm".into(),
-        panels: vec![SurfacePanel { caption: "c".into(), counts: [3, 2], size: [100.0, 50.0], heights }],
+        panels: vec![surface],
     };
     let mark =
         |sign| SketchMark { sign, text: "u₁ = 0 & <more>".into(), lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]] };
     let sketch = Sketch {
         name: "sketch".into(),
         title: title(),
-        axes: ["x₁".into(), "x₂".into(), "x₃".into()],
-        bodies: vec![SketchBody { nodes: [2; 3], points: (0..8).map(corner).collect() }],
+        axes: ["x₁ (10 mm)".into(), "x₂ (10 mm)".into(), "x₃".into()],
+        bodies: vec![SketchBody { points, faces }],
+        view: View::towards([0.0, 1.0, 0.0]),
         marks: vec![mark(Sign::Support), mark(Sign::Arrow)],
         notes: vec!["E = 7·10^{4} MPa".into()],
     };
@@ -269,9 +280,8 @@ fn png_is_refused_for_impossible_scales_and_text_that_is_no_svg() {
 fn texts_of_a_slim_map_do_not_overlap() {
     let panel = |caption: &str| MapPanel {
         caption: caption.into(),
-        counts: [6, 3],
-        origin: [0.0; 2],
-        size: [1.0, 8.0],
+        points: rectangle([6, 3], 0.0, [1.0, 8.0]),
+        faces: grid_faces([6, 3]),
         values: (0..18).map(|value| 100.0 * f64::from(value)).collect(),
     };
     for scales in [ColourScales::Common, ColourScales::Own] {

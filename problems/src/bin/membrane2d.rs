@@ -1,7 +1,7 @@
 //! Minimises the membrane over an obstacle with the bundle-trust engine.
 
 use clap::Parser;
-use figures::{ColourScales, Map, MapPanel};
+use figures::{ColourScales, Map, MapPanel, grid_faces};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
@@ -112,9 +112,11 @@ fn pictures(folder: &Folder, theta: &MembraneObjective, states: &[MembraneState;
     for (name, unit, field) in fields {
         let panel = |(state, caption): (&MembraneState, &str)| MapPanel {
             caption: caption.to_owned(),
-            counts: [inner; 2],
-            origin: grid.origin.map(|origin| origin + cell),
-            size: [grid.length - 2.0 * cell; 2],
+            points: (0..inner * inner)
+                .map(|node| [node / inner + 1, node % inner + 1])
+                .map(|node| [0, 1].map(|axis| grid.origin[axis] + cell * node[axis] as f64))
+                .collect(),
+            faces: grid_faces([inner; 2]),
             values: field(state).to_vec(),
         };
         let map = Map {

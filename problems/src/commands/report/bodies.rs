@@ -3,11 +3,11 @@
 use crate::commands::numbers::number;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::solved_shape::ContactObjective;
-use contact::body::mesh::Block;
+use contact::body::mesh::{Block, Grid};
 use contact::fields::{BodyFields, Fields};
 use figures::{
-    ColourScales, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, SurfacePanel, Surfaces,
-    nice_below,
+    ColourScales, Figure, FigureError, Map, MapPanel, SolidBody, SolidPanel, Solids, SurfacePanel, Surfaces, View,
+    box_faces, grid_faces, nice_below,
 };
 
 /// Largest displacement that is drawn, as a share of the largest side of the bodies.
@@ -49,7 +49,7 @@ fn stresses(
     let lift = if upper > 0.0 { nice_below(MAX_LIFT * upper) } else { 0.0 };
     let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
         caption: shape.caption.clone(),
-        blocks: numbers
+        bodies: numbers
             .iter()
             .filter_map(|&number| fields.bodies.get(number))
             .zip([0.0, lift])
@@ -64,6 +64,7 @@ fn stresses(
         unit: "MPa".into(),
         axes: [format!("x₁ ({a} mm)"), format!("x₂ ({b} mm)"), "x₃".into()],
         note: format!("displacements × {times}{lifted}"),
+        view: View::default(),
         panels: seen().map(panel).collect(),
     }
     .figure()
@@ -87,7 +88,11 @@ pub fn above_mean(caption: &str, heights: &[f64]) -> (String, Vec<f64>) {
 pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
-    let panel = |(caption, heights)| SurfacePanel { caption, counts: [n1, n2], size: problem.grid.size, heights };
+    let panel = |(caption, heights): (String, Vec<f64>)| SurfacePanel {
+        caption,
+        points: plan(&problem.grid).into_iter().zip(heights).map(|([x1, x2], height)| [x1, x2, height]).collect(),
+        faces: grid_faces([n1, n2]),
+    };
     Surfaces {
         name: "surface".into(),
         title: format!("{}: contact surface of the lower body, without load", problem.scene.name),
@@ -102,8 +107,8 @@ pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Resu
 pub fn surface_map(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
-    let (counts, size) = ([n1, n2], problem.grid.size);
-    let panel = |(caption, values)| MapPanel { caption, counts, origin: [0.0; 2], size, values };
+    let panel =
+        |(caption, values)| MapPanel { caption, points: plan(&problem.grid), faces: grid_faces([n1, n2]), values };
     Map {
         name: "surface_map".into(),
         title: format!("{}: contact surface of the lower body from above, lines of equal height", problem.scene.name),
@@ -117,6 +122,11 @@ pub fn surface_map(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> R
     .figure()
 }
 
+/// Positions of all columns of a grid, mm.
+pub fn plan(grid: &Grid) -> Vec<[f64; 2]> {
+    grid.columns().map(|(i, j)| grid.position(i, j)).collect()
+}
+
 /// Largest height of a column of a body, mm.
 fn height(body: &BodyFields) -> f64 {
     let Block { lower, upper, .. } = &body.block;
@@ -124,12 +134,12 @@ fn height(body: &BodyFields) -> f64 {
 }
 
 /// A body with its displacements magnified, lifted by some mm.
-fn block(body: &BodyFields, times: f64, lift: f64) -> SolidBlock {
+fn block(body: &BodyFields, times: f64, lift: f64) -> SolidBody {
     let [n1, n2, n3] = body.block.grid.nodes();
     let nodes = (0..n1 * n2 * n3).map(|node| [node / (n2 * n3), node / n3 % n2, node % n3]);
     let points = nodes.zip(&body.displacement).map(|(node, u)| {
         let [x1, x2, x3] = body.block.coordinates(node);
         [x1 + times * u[0], x2 + times * u[1], x3 + times * u[2] + lift]
     });
-    SolidBlock { nodes: [n1, n2, n3], points: points.collect(), values: body.nodal_von_mises.clone() }
+    SolidBody { points: points.collect(), faces: box_faces([n1, n2, n3]), values: body.nodal_von_mises.clone() }
 }

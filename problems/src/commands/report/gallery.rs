@@ -1,12 +1,13 @@
 //! The figures of contact and of a run; solved shapes as figures and files show them.
 
 use crate::commands::failure::Failure;
+use crate::commands::report::bodies::plan;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use figures::{
     ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, Step,
-    number,
+    grid_faces, number,
 };
 use nonsmooth::Report;
 use scene_file::OutputSection;
@@ -48,8 +49,8 @@ pub fn pressure(
 ) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
-    let (counts, size) = ([n1, n2], problem.grid.size);
-    let panel = |(caption, values)| MapPanel { caption, counts, origin: [0.0; 2], size, values };
+    let panel =
+        |(caption, values)| MapPanel { caption, points: plan(&problem.grid), faces: grid_faces([n1, n2]), values };
     let found = shapes.iter().map(|shape| (shape.caption.clone(), objective.pressures(&shape.solved.state)));
     let wanted = objective.wanted().map(|wanted| (WANTED.to_owned(), wanted.to_vec()));
     let (name, words) = match scales {
@@ -138,9 +139,8 @@ pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result
         let tractions = forces.tangential.iter().zip(&problem.boundary.points);
         ClassPanel {
             caption: shape.caption.clone(),
-            counts: [n1, n2],
-            origin: [0.0; 2],
-            size: problem.grid.size,
+            points: plan(&problem.grid),
+            faces: grid_faces([n1, n2]),
             classes: forces.status.iter().map(class).collect(),
             arrows: tractions.map(|(force, point)| force.map(|force| force / point.area)).collect(),
         }

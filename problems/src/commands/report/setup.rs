@@ -4,7 +4,7 @@ use crate::commands::failure::Failure;
 use crate::commands::solved_shape::ContactObjective;
 use contact::body::mesh::{Block, Face};
 use contact::scene::{BodyScene, Load, Support};
-use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, nice_below, number};
+use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, View, box_faces, grid_faces, nice_below, number};
 
 /// Shares of a side at which marks stand.
 const PLACES: [f64; 3] = [0.17, 0.5, 0.83];
@@ -36,7 +36,8 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
             let [x1, x2] = grid.position(i, j);
             [x1, x2, counter.drawn(scene.counter_surface.height(x1, x2)) + lift]
         });
-        bodies.push(SketchBody { nodes: [grid.cells[0] + 1, grid.cells[1] + 1, 1], points: heights.collect() });
+        let faces = grid_faces([grid.cells[0] + 1, grid.cells[1] + 1]);
+        bodies.push(SketchBody { points: heights.collect(), faces });
         notes.push("surface above: rigid obstacle".to_owned());
     }
     let mut marks = Vec::new();
@@ -64,6 +65,7 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
         title: format!("{}: bodies, supports and loads", scene.name),
         axes: [format!("x₁ ({a} mm)"), format!("x₂ ({b} mm)"), "x₃".into()],
         bodies,
+        view: View::default(),
         marks,
         notes,
     };
@@ -121,7 +123,8 @@ fn body(block: &Block, lift: f64) -> SketchBody {
     let [n1, n2, n3] = block.grid.nodes();
     let nodes = (0..n1 * n2 * n3).map(|node| [node / (n2 * n3), node / n3 % n2, node % n3]);
     let lifted = |[x1, x2, x3]: [f64; 3]| [x1, x2, x3 + lift];
-    SketchBody { nodes: [n1, n2, n3], points: nodes.map(|node| lifted(block.coordinates(node))).collect() }
+    let points = nodes.map(|node| lifted(block.coordinates(node))).collect();
+    SketchBody { points, faces: box_faces([n1, n2, n3]) }
 }
 
 fn material(name: &str, scene: &BodyScene) -> String {

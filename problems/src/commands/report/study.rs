@@ -11,7 +11,9 @@ use crate::commands::study::row::{Outcome, Picture, Row, Solved};
 use crate::commands::study::table::{StudyJson, row_folder, values};
 use crate::commands::study::varied::parts;
 use figures::page::{Block, File, Page, Section};
-use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
+use figures::{
+    ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces, grid_faces,
+};
 
 /// Folder of the figures.
 const FIGURES: &str = "figures";
@@ -188,10 +190,22 @@ fn caption(row: &Row) -> String {
     options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
 }
 
+/// Positions of n₁ × n₂ contact nodes at equal distances, mm.
+fn plan([n1, n2]: [usize; 2], size: [f64; 2]) -> Vec<[f64; 2]> {
+    let place =
+        |node: usize| [size[0] * (node / n2) as f64 / (n1 - 1) as f64, size[1] * (node % n2) as f64 / (n2 - 1) as f64];
+    (0..n1 * n2).map(place).collect()
+}
+
 fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
         let Picture { counts, size, pressures, .. } = &solved.picture;
-        MapPanel { caption: caption(row), counts: *counts, origin: [0.0; 2], size: *size, values: pressures.clone() }
+        MapPanel {
+            caption: caption(row),
+            points: plan(*counts, *size),
+            faces: grid_faces(*counts),
+            values: pressures.clone(),
+        }
     };
     Map {
         name,
@@ -210,7 +224,8 @@ fn surfaces(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, F
     let panel = |Shown { row, solved }: &Shown<'_>| {
         let Picture { counts, size, heights, .. } = &solved.picture;
         let (caption, heights) = above_mean(&caption(row), heights);
-        SurfacePanel { caption, counts: *counts, size: *size, heights }
+        let points = plan(*counts, *size).into_iter().zip(heights).map(|([x1, x2], height)| [x1, x2, height]);
+        SurfacePanel { caption, points: points.collect(), faces: grid_faces(*counts) }
     };
     Surfaces {
         name,
