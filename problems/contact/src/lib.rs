@@ -68,7 +68,6 @@ pub mod error;
 pub mod fields;
 pub mod friction_problem;
 pub mod formula;
-mod lattice;
 pub mod linear;
 pub mod memory;
 pub mod names;

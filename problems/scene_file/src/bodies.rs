@@ -1,9 +1,8 @@
 //! Bodies of a scene file: material, supports, loads.
 
 use contact::body::elasticity::{Formulation, Material};
-use contact::body::mesh::Face;
 use contact::error::SceneError;
-use contact::scene::{BodyScene, Load, Support};
+use contact::scene::{BodyScene, Held, Load, LoadKind, Support};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -48,7 +47,7 @@ pub struct MaterialSection {
     /// Poisson's ratio.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
     pub poisson_ratio: f64,
-    /// Bricks: `mean-dilatation` against locking of nearly incompressible materials.
+    /// Cells: `mean-dilatation` against locking of nearly incompressible materials.
     #[serde(default)]
     pub formulation: Formulation,
 }
@@ -57,21 +56,50 @@ pub struct MaterialSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSection {
-    /// The face.
-    pub face: Face,
-    /// Displacement components that are zero there; u3 only on the face opposite to the contact boundary.
+    /// The face: x1-min, x1-max, x2-min, x2-max, bottom or top of a block, or a physical surface of a mesh.
+    pub face: String,
+    /// Displacement components that are zero there, or the one along the normal of the face at the start. On a block, u3
+    /// only on the face opposite to the contact boundary.
     pub held: Vec<Component>,
 }
 
-/// A constant traction on a face.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A load: one of traction, pressure, force with moment, and formula on a face, or a body force.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadSection {
-    /// The face.
-    pub face: Face,
+    /// The face of a load on a face, named as those of supports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
+    /// The physical volume of a body force. Default the whole body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume: Option<String>,
     /// Traction along x1, x2, x3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e15, max = 1e15)), extend("x-unit" = "MPa"))]
-    pub traction: [f64; 3],
+    pub traction: Option<[f64; 3]>,
+    /// Pressure against the outward normal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e15, max = 1e15), extend("x-unit" = "MPa"))]
+    pub pressure: Option<f64>,
+    /// Total force along x1, x2, x3, as a traction that is linear over the face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e18, max = 1e18)), extend("x-unit" = "N"))]
+    pub force: Option<[f64; 3]>,
+    /// Moment about the point, besides the force or alone. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e21, max = 1e21)), extend("x-unit" = "N mm"))]
+    pub moment: Option<[f64; 3]>,
+    /// Where the force attacks, and what the moment refers to. Default the centroid of the face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub point: Option<[f64; 3]>,
+    /// Traction along x1, x2, x3 in MPa as formulas in x1, x2, x3 in mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<[String; 3]>,
+    /// Force per volume along x1, x2, x3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e15, max = 1e15)), extend("x-unit" = "N/mm³"))]
+    pub body_force: Option<[f64; 3]>,
 }
 
 /// A displacement component.
@@ -82,24 +110,164 @@ pub enum Component {
     U1,
     U2,
     U3,
+    Normal,
 }
 
-/// The body of a scene.
+/// A body as a mesh from a Gmsh file (4.1, text or binary): hexahedra of 8 nodes, tetrahedra of 4 or 10 nodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshBodySection {
+    /// The file, beside the scene file. Physical surfaces name faces, physical volumes parts of other material, physical
+    /// points and curves sets of nodes.
+    pub mesh: String,
+    /// Unit of lengths in the file.
+    #[serde(default)]
+    pub unit: UnitName,
+    /// Pieces into which total FETI divides the body, about. Default one per 512 hexahedra or 400 tetrahedra.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
+    pub pieces: Option<usize>,
+    /// Elastic constants of all volumes without others.
+    pub material: MaterialSection,
+    /// Elastic constants of physical volumes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<VolumeMaterialSection>,
+    /// Held faces.
+    #[serde(default)]
+    pub supports: Vec<SupportSection>,
+    /// The loads.
+    #[serde(default)]
+    pub loads: Vec<LoadSection>,
+}
+
+/// An isotropic elastic material of a physical volume.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VolumeMaterialSection {
+    /// The physical volume.
+    pub volume: String,
+    /// Young's modulus E.
+    #[schemars(range(min = 1e-9, max = 1e15), extend("x-unit" = "MPa"))]
+    pub young_modulus: f64,
+    /// Poisson's ratio.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
+    pub poisson_ratio: f64,
+    /// Cells: `mean-dilatation` against locking of nearly incompressible materials.
+    #[serde(default)]
+    pub formulation: Formulation,
+}
+
+/// A unit of length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum UnitName {
+    /// Millimetres.
+    #[default]
+    Mm,
+    /// Centimetres.
+    Cm,
+    /// Metres.
+    M,
+    /// Inches of 25.4 mm.
+    Inch,
+}
+
+impl UnitName {
+    /// Its length in mm.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Mm => 1.0,
+            Self::Cm => 10.0,
+            Self::M => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
+
+    /// Its name in words.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Mm => "mm",
+            Self::Cm => "cm",
+            Self::M => "m",
+            Self::Inch => "inches",
+        }
+    }
+}
+
+impl MaterialSection {
+    fn material(&self) -> Result<Material, SceneError> {
+        Ok(Material::new(self.young_modulus, self.poisson_ratio)?.with_formulation(self.formulation))
+    }
+}
+
+impl MeshBodySection {
+    /// The body of the scene.
+    ///
+    /// # Errors
+    /// As [`body`].
+    pub(super) fn scene(&self) -> Result<BodyScene, SceneError> {
+        let of_volume = |section: &VolumeMaterialSection| {
+            let material = Material::new(section.young_modulus, section.poisson_ratio)?;
+            Ok((section.volume.clone(), material.with_formulation(section.formulation)))
+        };
+        let materials = self.materials.iter().map(of_volume).collect::<Result<_, SceneError>>()?;
+        Ok(BodyScene { materials, ..body("body", &self.material, &self.supports, &self.loads)? })
+    }
+}
+
+/// The body of a scene; `name` stands in messages.
 ///
 /// # Errors
-/// [`SceneError`] for elastic constants outside their range.
+/// [`SceneError`] for elastic constants outside their range and for loads of no kind or of two.
 pub(super) fn body(
+    name: &str,
     material: &MaterialSection,
     supports: &[SupportSection],
     loads: &[LoadSection],
 ) -> Result<BodyScene, SceneError> {
-    let support = |section: &SupportSection| Support {
-        face: section.face,
-        components: [Component::U1, Component::U2, Component::U3].map(|component| section.held.contains(&component)),
+    let support = |section: &SupportSection| {
+        let holds = |component| section.held.contains(&component);
+        let axes = [Component::U1, Component::U2, Component::U3].map(holds);
+        let components = (axes.contains(&true) || !holds(Component::Normal)).then_some(Held::Components(axes));
+        let normal = holds(Component::Normal).then_some(Held::Normal);
+        let of = |held| Support { face: section.face.clone(), held };
+        components.into_iter().chain(normal).map(of).collect::<Vec<Support>>()
     };
-    Ok(BodyScene {
-        material: Material::new(material.young_modulus, material.poisson_ratio)?.with_formulation(material.formulation),
-        supports: supports.iter().map(support).collect(),
-        loads: loads.iter().map(|load| Load { face: load.face, traction: load.traction }).collect(),
-    })
+    let loads = loads.iter().enumerate().map(|(index, section)| load(&format!("{name}.loads[{index}]"), section));
+    let loads = loads.collect::<Result<_, SceneError>>()?;
+    Ok(BodyScene::new(material.material()?, supports.iter().flat_map(support).collect(), loads))
+}
+
+/// The load of a section.
+fn load(field: &str, section: &LoadSection) -> Result<Load, SceneError> {
+    let LoadSection { face, volume, traction, pressure, force, moment, point, formula, body_force } = section;
+    let resultant = (force.is_some() || moment.is_some()).then(|| LoadKind::Resultant {
+        force: force.unwrap_or_default(),
+        moment: moment.unwrap_or_default(),
+        point: *point,
+    });
+    let on_face = [
+        traction.map(LoadKind::Traction),
+        pressure.map(LoadKind::Pressure),
+        resultant,
+        formula.clone().map(LoadKind::Formula),
+    ];
+    let mut kinds: Vec<(LoadKind, bool)> = on_face.into_iter().flatten().map(|kind| (kind, true)).collect();
+    kinds.extend(body_force.map(|force| (LoadKind::BodyForce(force), false)));
+    let refused = |value: &str, allowed: &str| Err(SceneError::out_of_range(field, value, allowed));
+    let (kind, needs_face) = match kinds.pop() {
+        None => return refused("a load of no size", "one of traction, pressure, force, moment, formula, body_force"),
+        Some(_) if !kinds.is_empty() => return refused("several loads", "one kind of load per entry"),
+        Some(found) => found,
+    };
+    if point.is_some() && force.is_none() && moment.is_none() {
+        return refused("a point", "a point with a force or a moment alone");
+    }
+    match (needs_face, face, volume) {
+        (true, Some(face), None) => Ok(Load { place: Some(face.clone()), kind }),
+        (true, None, _) => refused("a load without a face", "the face that it acts on"),
+        (true, Some(_), Some(_)) => refused("a volume", "a volume with a body force alone"),
+        (false, None, volume) => Ok(Load { place: volume.clone(), kind }),
+        (false, Some(_), _) => refused("a face", "a volume, or none, with a body force"),
+    }
 }

@@ -3,18 +3,20 @@
 use crate::bodies::body;
 use crate::grid_file;
 use crate::limit::peak_limit;
+use crate::mesh_file::{self, MeshFile};
 use crate::{
-    AccuracyName, CounterSection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile, SplineName,
-    StartSection, SurfaceSection,
+    AccuracyName, CounterSection, MeshBodySection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile,
+    SplineName, StartSection, SurfaceSection, UpperSection,
 };
 use contact::cost::Measure;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
-use contact::scene::{CounterSurface, Scene, UpperBody};
-use contact::shape::{ShapeBounds, SplineKind};
-use contact::solvers::{SolverKind, SolverPlan, Wanted, cluster_shape};
+use contact::scene::{Blocks, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
+use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
+use contact::solvers::{SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Degree of the paper's B-splines.
 const DEFAULT_DEGREE: usize = 3;
@@ -24,7 +26,7 @@ const DEFAULT_DEGREE: usize = 3;
 pub struct Case {
     /// The scene.
     pub scene: Scene,
-    /// Control heights at the start, mm, where they are not all the scene's start height.
+    /// Controls at the start, mm, where they are not those of the scene.
     pub start: Option<Vec<f64>>,
     /// What is minimised.
     pub objective: Objective,
@@ -42,6 +44,8 @@ pub struct Case {
     pub optimizer: OptimizerSection,
     /// Outputs.
     pub output: OutputSection,
+    /// What is to be said of the files of the scene before any work.
+    pub notes: Vec<String>,
 }
 
 impl Case {
@@ -50,36 +54,16 @@ impl Case {
     /// # Errors
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn new(file: &SceneFile, folder: &Path) -> Result<Self, SceneError> {
-        let control_points = file.surface.control_points;
-        let (start_height, start) = start(&file.surface.start, file.size, control_points, folder)?;
-        let (lower, upper) = (&file.lower, file.upper.as_ref());
-        let upper = upper.map(|upper| (upper.top, body(&upper.material, &upper.supports, &upper.loads)));
-        let scene = Scene {
-            name: file.name.clone(),
-            size: file.size,
-            mesh: file.mesh.bricks,
-            subdomains: file.mesh.subdomains.unwrap_or_else(|| file.mesh.bricks.map(default_subdomains)),
-            lower: body(&lower.material, &lower.supports, &lower.loads)?,
-            upper: upper.map(|(top, body)| body.map(|body| UpperBody { body, top })).transpose()?,
-            counter_surface: counter_surface(&file.counter_surface, file.size, folder)?,
-            friction: file.friction,
-            surface: spline(&file.surface)?,
-            control_points,
-            bounds: ShapeBounds {
-                minimum_height: file.admissible.minimum_height,
-                slope: file.admissible.slope,
-                volume: file.admissible.volume,
-            },
-            start_height,
+        let Parts { scene, start, notes } = match &file.body {
+            Some(body) => mesh_scene(file, body, folder)?,
+            None => block_scene(file, folder)?,
         };
         scene.validate()?;
-        if let Some(clusters) = file.solver.clusters {
-            cluster_shape(&scene, file.solver.kind, clusters)?;
-        }
-        check_continuation(&file.optimizer)?;
+        check_continuation(&file.optimizer, file.body.is_some())?;
         let objective = Objective::new(&file.objective, file.size, folder)?;
-        if let Objective::Deviation(wanted) = &objective {
-            wanted.at(&scene.grid())?;
+        if let (Objective::Deviation(wanted), Some(blocks)) = (&objective, scene.blocks()) {
+            let height = scene.heights().map_or(0.0, |heights| heights.start_height);
+            wanted.at(&blocks.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
         let peak_limit = peak_limit(&file.limit, &objective)?;
         let method = method(&objective, file.optimizer.method)?;
@@ -95,6 +79,7 @@ impl Case {
             clusters: file.solver.clusters,
             optimizer: file.optimizer.clone(),
             output: file.output.clone(),
+            notes,
         })
     }
 
@@ -114,6 +99,84 @@ impl Case {
         let Self { preconditioner, clusters, .. } = *self;
         SolverPlan { scene: self.scene.clone(), kind: self.solver, preconditioner, clusters, wanted }
     }
+}
+
+/// A scene with what goes beside it.
+struct Parts {
+    scene: Scene,
+    start: Option<Vec<f64>>,
+    notes: Vec<String>,
+}
+
+/// A field that a scene of blocks, or of a mesh, must have.
+fn required<'f, T>(field: &str, value: Option<&'f T>, allowed: &str) -> Result<&'f T, SceneError> {
+    value.ok_or_else(|| SceneError::out_of_range(field, "missing", allowed))
+}
+
+/// The scene of blocks.
+fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, SceneError> {
+    let block = "a table, for a block (or [body] with a mesh)";
+    let size = *required("size", file.size.as_ref(), "the lengths of the base of a block (or [body] with a mesh)")?;
+    let lower = required("lower", file.lower.as_ref(), block)?;
+    let surface = required("surface", file.surface.as_ref(), block)?;
+    let admissible = required("admissible", file.admissible.as_ref(), block)?;
+    if file.lattice.is_some() {
+        return Err(SceneError::out_of_range("lattice", "a table", "none for a block, which surface shapes"));
+    }
+    let control_points = surface.control_points;
+    let (start_height, start) = start(&surface.start, size, control_points, folder)?;
+    let upper = |upper: &UpperSection| {
+        let body = body("upper", &upper.material, &upper.supports, &upper.loads)?;
+        Ok::<_, SceneError>(UpperBody { body, top: upper.top })
+    };
+    let subdomains = file.mesh.subdomains.unwrap_or_else(|| file.mesh.bricks.map(default_subdomains));
+    let scene = Scene {
+        name: file.name.clone(),
+        geometry: Geometry::Blocks(Blocks { size, bricks: file.mesh.bricks, subdomains }),
+        lower: body("lower", &lower.material, &lower.supports, &lower.loads)?,
+        upper: file.upper.as_ref().map(upper).transpose()?,
+        counter_surface: counter_surface(&file.counter_surface, Some(size), folder)?,
+        contact: file.contact.scene("top", file.friction, file.upper.is_some()),
+        shape: ShapeScene::Heights(HeightShape {
+            spline: spline(surface)?,
+            control_points,
+            bounds: ShapeBounds {
+                minimum_height: admissible.minimum_height,
+                slope: admissible.slope,
+                volume: admissible.volume,
+            },
+            start_height,
+        }),
+    };
+    Ok(Parts { scene, start, notes: Vec::new() })
+}
+
+/// The scene of a mesh.
+fn mesh_scene(file: &SceneFile, body: &MeshBodySection, folder: &Path) -> Result<Parts, SceneError> {
+    for (field, given) in [
+        ("size", file.size.is_some()),
+        ("lower", file.lower.is_some()),
+        ("upper", file.upper.is_some()),
+        ("surface", file.surface.is_some()),
+        ("admissible", file.admissible.is_some()),
+    ] {
+        if given {
+            return Err(SceneError::out_of_range(field, "a value", "none beside [body], which has a mesh and a lattice"));
+        }
+    }
+    let MeshFile { mesh, notes } = mesh_file::read(&folder.join(&body.mesh), body.unit)?;
+    let face = required("contact.face", file.contact.face.as_ref(), "the physical surface of the mesh that may touch")?;
+    let lattice = required("lattice", file.lattice.as_ref(), "a table, for the shapes of a mesh")?;
+    let scene = Scene {
+        name: file.name.clone(),
+        lower: body.scene()?,
+        upper: None,
+        counter_surface: counter_surface(&file.counter_surface, None, folder)?,
+        contact: file.contact.scene(face, file.friction, false),
+        shape: ShapeScene::Lattice(lattice.shape(&mesh)?),
+        geometry: Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: body.pieces }),
+    };
+    Ok(Parts { scene, start: None, notes })
 }
 
 /// 2 subdomains per edge, or, where 2 does not divide the bricks, the divisor that leaves closest to six bricks.
@@ -139,12 +202,24 @@ fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
     }
 }
 
-fn counter_surface(section: &CounterSection, size: [f64; 2], folder: &Path) -> Result<CounterSurface, SceneError> {
+fn counter_surface(
+    section: &CounterSection,
+    base: Option<[f64; 2]>,
+    folder: &Path,
+) -> Result<CounterSurface, SceneError> {
     Ok(match section {
         &CounterSection::Plane { height } => CounterSurface::Plane { height },
         &CounterSection::Waves { base, first, second, period } => CounterSurface::Waves { base, first, second, period },
         &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius, centre: [0.0; 2] },
-        CounterSection::Grid { file } => CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?),
+        CounterSection::Grid { file, origin, size } => {
+            let size = size.or(base);
+            let size = *required("counter_surface.size", size.as_ref(), "the lengths of the grid along x1, x2 (mm)")?;
+            let grid = grid_file::read(&folder.join(file), size, "mm")?;
+            CounterSurface::Grid(grid.at(origin.unwrap_or_default()))
+        }
+        &CounterSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
+        &CounterSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
+        &CounterSection::Cylinder { point, axis, radius, side } => CounterSurface::Cylinder { point, axis, radius, side },
     })
 }
 
@@ -199,8 +274,12 @@ fn check_accuracy(objective: &Objective, accuracy: AccuracyName) -> Result<(), S
     Ok(())
 }
 
-fn check_continuation(optimizer: &OptimizerSection) -> Result<(), SceneError> {
+fn check_continuation(optimizer: &OptimizerSection, is_mesh: bool) -> Result<(), SceneError> {
     let meshes = &optimizer.continuation;
+    if is_mesh && !meshes.is_empty() {
+        let value = format!("{meshes:?}");
+        return Err(SceneError::out_of_range("optimizer.continuation", value, "[] with [body]: a mesh is one mesh"));
+    }
     if optimizer.starts > 1 && !meshes.is_empty() {
         return Err(SceneError::out_of_range("optimizer.starts", optimizer.starts, "1 with optimizer.continuation"));
     }

@@ -10,9 +10,11 @@ mod allowed;
 mod bodies;
 mod case;
 mod check;
-mod formula;
+mod contact_section;
 mod grid_file;
+mod lattice;
 mod limit;
+mod mesh_file;
 mod objective;
 mod print;
 mod schema;
@@ -24,9 +26,13 @@ mod text;
 mod wanted_pressure;
 
 pub use allowed::choices;
-pub use bodies::{BodySection, Component, LoadSection, MaterialSection, SupportSection, UpperSection};
+pub use bodies::{
+    BodySection, Component, LoadSection, MaterialSection, MeshBodySection, SupportSection, UnitName, UpperSection,
+    VolumeMaterialSection,
+};
 pub use case::{Case, default_subdomains};
-pub use grid_file::read_grid;
+pub use contact_section::{ContactSection, FrictionSection};
+pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::{LimitSection, LimitedQuantity};
 pub use objective::{BodyName, MeasureName, Objective, ObjectiveSection, RegionSection, WantedSection};
 pub use schema::schema;
@@ -42,39 +48,54 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Names of copies of the grids of a scene, beside a copy of its file.
-pub const GRIDS: [&str; 3] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv"];
+/// Names of copies of the files of a scene, beside a copy of its own.
+pub const FILES: [&str; 4] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv", "body.msh"];
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// A contact shape optimization problem: an elastic body with an optimized upper surface below a rigid obstacle or a
-/// second elastic body. Units: N, mm, MPa. x1, x2 span the base, x3 points upwards; the lower body stands on x3 = 0.
+/// A contact shape optimization problem: an elastic body of optimized shape that touches a rigid obstacle or a second
+/// elastic body. Units: N, mm, MPa. The body is a block of bricks with an optimized upper surface, over the base spanned by
+/// x1, x2 and standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of control points (body,
+/// lattice).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Name for reports.
     pub name: String,
-    /// Lengths a, b of the base of both bodies along x1, x2.
+    /// Lengths a, b of the base of blocks along x1, x2. Default none: required for blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
-    pub size: [f64; 2],
+    pub size: Option<[f64; 2]>,
     /// Coulomb friction coefficient between the lower body and what is above it.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
     pub friction: f64,
-    /// Mesh and tearing into subdomains, the same for both bodies.
+    /// What touches, along which normals.
+    #[serde(default)]
+    pub contact: ContactSection,
+    /// Bricks of blocks and tearing into subdomains, the same for both blocks.
     #[serde(default)]
     pub mesh: MeshSection,
-    /// The body whose upper surface is optimized.
-    pub lower: BodySection,
-    /// The elastic body above; left out for a rigid obstacle.
+    /// The body as a mesh, in place of blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<MeshBodySection>,
+    /// The block whose upper surface is optimized.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<BodySection>,
+    /// The elastic block above; left out for a rigid obstacle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<UpperSection>,
     /// The rigid obstacle, or the lower surface of the upper body.
     pub counter_surface: CounterSection,
-    /// The optimized surface: its spline and its start.
-    pub surface: SurfaceSection,
-    /// The admissible set of control heights; they also stay below the counter surface.
-    pub admissible: AdmissibleSection,
+    /// The optimized surface of a block: its spline and its start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<SurfaceSection>,
+    /// The admissible set of control heights of a block; they also stay below the counter surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub admissible: Option<AdmissibleSection>,
+    /// The shapes of a mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lattice: Option<LatticeSection>,
     /// What is minimised.
     #[serde(default)]
     pub objective: ObjectiveSection,
@@ -116,20 +137,21 @@ impl SceneFile {
         Self::parse(&read_text(file, LARGEST_FILE)?, &path)
     }
 
-    /// The grid files that the scene names, each with the name of its copy beside a copy of the scene.
-    pub fn grids_mut(&mut self) -> Vec<(&'static str, &mut String)> {
-        let [counter, start, wanted] = GRIDS;
-        let mut grids = Vec::new();
-        if let CounterSection::Grid { file } = &mut self.counter_surface {
-            grids.push((counter, file));
+    /// The files that the scene names, each with the name of its copy beside a copy of the scene.
+    pub fn files_mut(&mut self) -> Vec<(&'static str, &mut String)> {
+        let [counter, start, wanted, body] = FILES;
+        let mut files = Vec::new();
+        if let CounterSection::Grid { file, .. } = &mut self.counter_surface {
+            files.push((counter, file));
         }
-        if let StartSection::Grid { file } = &mut self.surface.start {
-            grids.push((start, file));
+        if let Some(StartSection::Grid { file }) = self.surface.as_mut().map(|surface| &mut surface.start) {
+            files.push((start, file));
         }
         if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
-            grids.push((wanted, file));
+            files.push((wanted, file));
         }
-        grids
+        files.extend(self.body.as_mut().map(|section| (body, &mut section.mesh)));
+        files
     }
 
     /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set,

@@ -38,8 +38,8 @@ pub struct ObjectiveSection {
     /// For `pressure-deviation`, and required there: the wanted pressure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wanted: Option<WantedSection>,
-    /// For `stress-norm`: the bricks whose centres lie in this box while the lower body has its start height, faces
-    /// included; all bricks without it.
+    /// For `stress-norm`: the cells whose centres lie in this box at the start, faces included, and which belong to the
+    /// volume; all cells without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<RegionSection>,
 }
@@ -70,12 +70,12 @@ pub enum MeasureName {
 pub enum WantedSection {
     /// A formula.
     Formula {
-        /// The pressure in MPa over x1, x2 in mm, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * / ^, parentheses,
+        /// The pressure in MPa over x1, x2, x3 in mm at the start, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * / ^, parentheses,
         /// functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is -(x1^2); powers
         /// count from the right: 2^3^2 is 2^9.
         pressure: String,
     },
-    /// Pressures on a uniform grid over the base, bilinear in between.
+    /// Pressures on a uniform grid over the base of blocks, bilinear in between.
     Grid {
         /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; MPa. Lines that
         /// begin with # are comments.
@@ -83,7 +83,7 @@ pub enum WantedSection {
     },
 }
 
-/// A box in one body or in all.
+/// A box in one body or in all, or a volume of a mesh.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RegionSection {
@@ -102,6 +102,9 @@ pub struct RegionSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub x3: Option<[f64; 2]>,
+    /// A physical volume of the mesh. Default all volumes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volume: Option<String>,
 }
 
 /// One of the bodies.
@@ -126,7 +129,7 @@ pub enum Objective {
 
 impl Objective {
     /// The objective of a section; a grid that it names is looked up in `folder`.
-    pub(crate) fn new(section: &ObjectiveSection, size: [f64; 2], folder: &Path) -> Result<Self, SceneError> {
+    pub(crate) fn new(section: &ObjectiveSection, size: Option<[f64; 2]>, folder: &Path) -> Result<Self, SceneError> {
         refuse_foreign_fields(section)?;
         let exponent = |default: f64| section.exponent.unwrap_or(default);
         Ok(match section.measure {
@@ -139,6 +142,10 @@ impl Objective {
                 None => return Err(missing("objective.wanted", "a table with form = \"formula\" or form = \"grid\"")),
                 Some(WantedSection::Formula { pressure }) => WantedPressure::formula(pressure)?,
                 Some(WantedSection::Grid { file }) => {
+                    let size = size.ok_or_else(|| {
+                        let allowed = "\"formula\" for the body of a mesh, which has no base";
+                        SceneError::out_of_range("objective.wanted.form", "grid", allowed)
+                    })?;
                     WantedPressure::Grid(grid_file::read(&folder.join(file), size, "MPa")?)
                 }
             }),
@@ -162,7 +169,7 @@ impl Objective {
         Ok(match self {
             Self::Pressure(measure) => Measure::Pressure(measure.clone()),
             Self::Deviation(wanted) => {
-                Measure::Pressure(PressureMeasure::Deviation { wanted: wanted.at(&problem.grid)? })
+                Measure::Pressure(PressureMeasure::Deviation { wanted: wanted.at(&contact_places(problem))? })
             }
             Self::Field(measure) => Measure::Field(measure.clone()),
         })
@@ -187,6 +194,12 @@ impl Objective {
             },
         }
     }
+}
+
+/// Places of the contact nodes at the start, mm.
+fn contact_places(problem: &ContactProblem) -> Vec<[f64; 3]> {
+    let positions = &problem.start_positions()[0];
+    problem.boundary.points.iter().map(|point| positions[point.node as usize]).collect()
 }
 
 fn missing(field: &str, allowed: &str) -> SceneError {
@@ -233,5 +246,5 @@ fn region(section: Option<&RegionSection>) -> Result<Region, SceneError> {
         BodyName::Lower => 0,
         BodyName::Upper => 1,
     });
-    Ok(Region { lower, upper, body })
+    Ok(Region { lower, upper, body, volume: section.volume })
 }

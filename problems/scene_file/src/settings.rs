@@ -5,7 +5,7 @@ use contact::tfeti::PreconditionerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Mesh and tearing.
+/// Bricks of blocks, and their tearing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MeshSection {
@@ -34,8 +34,8 @@ pub struct SolverSection {
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Clusters into which the subdomains of all bodies are joined, equal boxes with six unknowns each in the coarse
-    /// problem of total FETI; at least as many as processes. Default none: every subdomain by itself.
+    /// Clusters into which the subdomains of all bodies are joined, with six unknowns each in the coarse problem of total
+    /// FETI; at least as many as processes. Default none: every subdomain by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub clusters: Option<usize>,
@@ -60,7 +60,7 @@ pub struct OptimizerSection {
     #[schemars(range(max = 1e9), extend("x-unit" = "s", "exclusiveMinimum" = 0.0))]
     pub time_limit: Option<f64>,
     /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at
-    /// the start, at least a thousandth and at most half of the smallest edge.
+    /// the start, at least a thousandth and at most half of the smallest extent of the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
     pub first_step: Option<f64>,
@@ -72,7 +72,7 @@ pub struct OptimizerSection {
     /// relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which
     /// can reach or cross 0.
     pub accuracy: AccuracyName,
-    /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion;
+    /// Growing meshes of a coarse-to-fine optimization of blocks, bricks along the axis that has most, the others in proportion;
     /// empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub continuation: Vec<usize>,

@@ -1,5 +1,6 @@
 //! Surfaces of a scene file: what lies above, what is optimized, and within which bounds.
 
+use contact::scene::Side;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +29,7 @@ pub enum CounterSection {
         #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
         period: f64,
     },
-    /// A sphere whose lowest point lies over the corner (0, 0); it must cover the base.
+    /// A sphere as a height surface, whose lowest point lies over the corner (0, 0); it must cover the base.
     Sphere {
         /// Height of the lowest point.
         #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
@@ -42,10 +43,52 @@ pub enum CounterSection {
         /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that
         /// begin with # are comments.
         file: String,
+        /// The corner of the grid of least x1 and x2, for a mesh. Default the corner of the base.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+        origin: Option<[f64; 2]>,
+        /// Lengths of the grid along x1, x2, for a mesh. Default those of the base.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
+        size: Option<[f64; 2]>,
+    },
+    /// A plane anywhere in space; an obstacle only.
+    TiltedPlane {
+        /// One of its points.
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+        point: [f64; 3],
+        /// Its normal from the body into the obstacle, of any length.
+        normal: [f64; 3],
+    },
+    /// A sphere anywhere in space; an obstacle only.
+    Ball {
+        /// Centre.
+        #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
+        centre: [f64; 3],
+        /// Radius.
+        #[schemars(range(max = 1e12), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
+        radius: f64,
+        /// Where the body is: inside for a socket.
+        #[serde(default)]
+        side: Side,
+    },
+    /// A circular cylinder anywhere in space, without ends; an obstacle only.
+    Cylinder {
+        /// A point of its axis.
+        #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
+        point: [f64; 3],
+        /// Direction of its axis, of any length.
+        axis: [f64; 3],
+        /// Radius.
+        #[schemars(range(max = 1e12), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
+        radius: f64,
+        /// Where the body is: inside for a bore.
+        #[serde(default)]
+        side: Side,
     },
 }
 
-/// The optimized surface.
+/// The optimized surface of a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceSection {

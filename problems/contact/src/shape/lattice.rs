@@ -67,11 +67,13 @@ pub struct LatticeShape {
     pub hold_supports: bool,
     /// Coordinates across whose middle the shape is symmetric.
     pub symmetric: [bool; 3],
+    /// Layers of control points that do not move at both ends of every coordinate.
+    pub frozen: [[usize; 2]; 3],
     /// Least and largest displacement of a control point, mm.
     pub displacement: [f64; 2],
     /// Bounds of the displacement of nodes.
     pub node_bounds: Vec<NodeBound>,
-    /// Least and largest volume of the body, mm³.
+    /// Least and largest volume of the body over that at the start.
     pub volume: Option<[f64; 2]>,
 }
 
@@ -109,8 +111,12 @@ impl LatticeShape {
         let mut done = BTreeSet::new();
         for point in 0..counts.iter().product() {
             let place = [point / (counts[1] * counts[2]), point / counts[2] % counts[1], point % counts[2]];
+            let is_frozen = |axis: usize| {
+                let [first, last] = self.frozen[axis];
+                place[axis] < first || place[axis] + last >= counts[axis]
+            };
             for &way in &ways {
-                if done.contains(&(point, way)) {
+                if done.contains(&(point, way)) || (0..3).any(is_frozen) {
                     continue;
                 }
                 let mut images: HashMap<usize, f64> = HashMap::from([(point, 1.0)]);
@@ -173,6 +179,11 @@ impl LatticeShape {
                     SceneError::require(least < largest, "lattice.ranges", value, "the smaller number first")?;
                 }
             }
+        }
+        if let Some([least, largest]) = self.volume {
+            let valid = 0.0 <= least && least <= largest && largest.is_finite() && largest > 0.0;
+            let value = format!("[{least}, {largest}]");
+            SceneError::require(valid, "lattice.volume", value, "the smaller number first, over the volume at the start")?;
         }
         let [least, largest] = self.displacement;
         let value = format!("[{least}, {largest}]");

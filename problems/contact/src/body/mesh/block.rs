@@ -6,7 +6,6 @@
 
 use crate::body::mesh::{CellFace, CellKind, Grid, Mesh};
 use crate::error::SceneError;
-use crate::lattice;
 use serde::{Deserialize, Serialize};
 
 /// A face of a block.
@@ -77,12 +76,13 @@ pub fn block(grid: &Grid, subdomains: [usize; 3], lower: &[f64], upper: &[f64]) 
         let [x1, x2] = grid.position(i, j);
         [x1, x2, lower[column] + (upper[column] - lower[column]) * share]
     };
-    let nodes = lattice::points([0; 3], grid.nodes()).map(position).collect();
-    let bricks = || lattice::points([0; 3], grid.cells);
-    let corners = |brick| (CellKind::Hex8, CORNERS.map(|corner| grid.node(lattice::add(brick, corner))));
+    let nodes = points(grid.nodes()).map(position).collect();
+    let bricks = || points(grid.cells);
+    let node = |brick: [usize; 3], corner: [usize; 3]| grid.node(std::array::from_fn(|axis| brick[axis] + corner[axis]));
+    let corners = |brick| (CellKind::Hex8, CORNERS.map(|corner| node(brick, corner)));
     let boxes: [usize; 3] = std::array::from_fn(|axis| grid.cells[axis] / subdomains[axis]);
     let piece = |brick: [usize; 3]| {
-        lattice::index(subdomains, std::array::from_fn(|axis| brick[axis] / boxes[axis])) as u32
+        index(subdomains, std::array::from_fn(|axis| brick[axis] / boxes[axis])) as u32
     };
     let mut mesh = Mesh::new(nodes, bricks().map(corners))?.with_pieces(bricks().map(piece).collect())?;
     for name in BlockFace::ALL {
@@ -93,4 +93,14 @@ pub fn block(grid: &Grid, subdomains: [usize; 3], lower: &[f64], upper: &[f64]) 
         mesh = mesh.with_face(name, faces)?;
     }
     Ok(mesh)
+}
+
+/// The points (i, j, k) of a box in the order of their indices (i·n₂ + j)·n₃ + k.
+fn points(counts: [usize; 3]) -> impl Iterator<Item = [usize; 3]> + use<> {
+    let [_, n2, n3] = counts;
+    (0..counts.iter().product()).map(move |index: usize| [index / (n2 * n3), index / n3 % n2, index % n3])
+}
+
+fn index([_, n2, n3]: [usize; 3], [i, j, k]: [usize; 3]) -> usize {
+    (i * n2 + j) * n3 + k
 }

@@ -27,8 +27,8 @@ impl Mesh {
         self.all_faces().filter(|face| counts[&self.face_key(*face)] == 1).collect()
     }
 
-    /// The skin by the corners of its faces.
-    pub(crate) fn skin_by_corners(&self) -> HashMap<[u32; 4], CellFace> {
+    /// The skin by the corners of its faces, ascending; the fourth one of a triangle is the largest number.
+    pub fn skin_by_corners(&self) -> HashMap<[u32; 4], CellFace> {
         self.skin().into_iter().map(|face| (self.face_key(face), face)).collect()
     }
 

@@ -1,0 +1,52 @@
+//! Contact of a scene file: what touches, along which normals, over which areas, with which friction.
+
+use contact::scene::{AreaKind, ContactScene, NormalKind};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The contact of the lower body, or of the body of a mesh.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ContactSection {
+    /// The face that may touch what is above it. Default "top" for blocks; required for a mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
+    /// Along which normals contact acts: those of the counter surface at the points nearest to the contact nodes, or x3
+    /// as in the paper. Default "surface" with a rigid obstacle, "x3" between two bodies, which take no other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<NormalKind>,
+    /// How the areas of contact nodes are measured: on the surface itself, or projected along x3 as in the paper.
+    /// Default "projected" with contact.normal = "x3", else "surface".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area: Option<AreaKind>,
+    /// Other friction coefficients on parts of the face.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<FrictionSection>,
+}
+
+/// The friction coefficient of a part of the contact face.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionSection {
+    /// The face, set of nodes or volume whose nodes have this coefficient; of several, the last one counts.
+    pub region: String,
+    /// Coulomb friction coefficient.
+    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
+    pub friction: f64,
+}
+
+impl ContactSection {
+    /// The contact of a scene whose contact face has this name by default.
+    pub(crate) fn scene(&self, face: &str, friction: f64, two_bodies: bool) -> ContactScene {
+        let usual = if two_bodies { NormalKind::X3 } else { NormalKind::Surface };
+        let normal = self.normal.unwrap_or(usual);
+        let area = if normal == NormalKind::X3 { AreaKind::Projected } else { AreaKind::Surface };
+        ContactScene {
+            face: self.face.clone().unwrap_or_else(|| face.to_owned()),
+            normal,
+            area: self.area.unwrap_or(area),
+            friction,
+            friction_by_region: self.regions.iter().map(|part| (part.region.clone(), part.friction)).collect(),
+        }
+    }
+}

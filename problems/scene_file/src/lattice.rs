@@ -1,0 +1,203 @@
+//! The lattice of a scene file: free-form shapes of any region.
+
+use contact::body::mesh::Mesh;
+use contact::error::SceneError;
+use contact::names::nodes_of;
+use contact::shape::{Coordinates, Directions, LatticeShape, NodeBound};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Highest degree that is chosen without being asked for.
+const USUAL_DEGREE: usize = 3;
+/// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
+const MARGIN: f64 = 1e-6;
+
+/// A lattice of control points around a region of the body: x = x0 + sum of B-splines times displacements of the control
+/// points, which are the controls (mm). Nodes outside its box stay where they are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeSection {
+    /// Control points along the three coordinates of the box.
+    #[schemars(inner(range(min = 1, max = 40)), extend("x-unit" = "1"))]
+    pub control_points: [usize; 3],
+    /// Degrees of the B-splines, less than the control points; control points less one give Bernstein polynomials.
+    /// Default 3, or as many as the control points allow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 0, max = 39)), extend("x-unit" = "1"))]
+    pub degrees: Option<[usize; 3]>,
+    /// Two opposite corners of a box along the axes. Default the box around the region; not with corner and edges or
+    /// with cylinder.
+    #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "mm"))]
+    pub bounds_of_box: Option<[[f64; 3]; 2]>,
+    /// Corner of an oriented box, with edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "mm"))]
+    pub corner: Option<[f64; 3]>,
+    /// The three edges of an oriented box from its corner, perpendicular to each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "mm"))]
+    pub edges: Option<[[f64; 3]; 3]>,
+    /// A sector of a tube in place of a box: radius, angle and height are its coordinates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cylinder: Option<CylinderSection>,
+    /// Coordinates along which the control points move: 1, 2, 3 are those of the box, or radius, angle and height.
+    /// Default [1, 2, 3]; not with normal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 1, max = 3)), extend("x-unit" = "1"))]
+    pub directions: Option<Vec<usize>>,
+    /// A face whose nodes move along its outward normal at the start, for small changes; no other node moves. Default
+    /// none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal: Option<String>,
+    /// Faces, sets of nodes and volumes whose nodes move. Default all nodes in the box.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub region: Vec<String>,
+    /// Faces and sets of nodes whose nodes do not move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixed: Vec<String>,
+    /// Whether supports hold nodes in the shape as they do under load.
+    #[serde(default = "yes")]
+    pub hold_supports: bool,
+    /// Coordinates across whose middle the shape is symmetric.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(inner(range(min = 1, max = 3)), extend("x-unit" = "1"))]
+    pub symmetric: Vec<usize>,
+    /// Layers of control points that do not move at both ends of every coordinate.
+    #[serde(default)]
+    #[schemars(extend("x-unit" = "1"))]
+    pub frozen: [[usize; 2]; 3],
+    /// Least and largest displacement of a control point.
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub displacement: [f64; 2],
+    /// Bounds of the displacements of nodes by the shape, a row each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bounds: Vec<NodeBoundSection>,
+    /// Least and largest volume of the body over that at the start. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 0.0, max = 1e6)), extend("x-unit" = "1"))]
+    pub volume: Option<[f64; 2]>,
+}
+
+/// A sector of a tube.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderSection {
+    /// A point of the axis, from which heights are measured.
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub point: [f64; 3],
+    /// Direction of the axis.
+    pub axis: [f64; 3],
+    /// Direction of the angle 0, across the axis.
+    pub zero: [f64; 3],
+    /// Least and largest radius.
+    #[schemars(inner(range(min = 0.0, max = 1e9)), extend("x-unit" = "mm"))]
+    pub radius: [f64; 2],
+    /// Least and largest angle.
+    #[schemars(inner(range(min = -360.0, max = 360.0)), extend("x-unit" = "degree"))]
+    pub angle: [f64; 2],
+    /// Least and largest height.
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub height: [f64; 2],
+}
+
+/// A bound of a component of the displacement of nodes by the shape.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NodeBoundSection {
+    /// Face, set of nodes or volume.
+    pub place: String,
+    /// Component along x1, x2 or x3.
+    #[schemars(range(min = 1, max = 3), extend("x-unit" = "1"))]
+    pub component: usize,
+    /// Least and largest displacement.
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub range: [f64; 2],
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl LatticeSection {
+    /// The shape on a mesh.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for fields that exclude each other and for names that the mesh does not have.
+    pub(crate) fn shape(&self, mesh: &Mesh) -> Result<LatticeShape, SceneError> {
+        let usual = self.control_points.map(|count| USUAL_DEGREE.min(count.saturating_sub(1)));
+        let directions = match (&self.normal, &self.directions) {
+            (Some(_), Some(directions)) => {
+                let value = format!("{directions:?}");
+                return Err(SceneError::out_of_range("lattice.directions", value, "none with lattice.normal"));
+            }
+            (Some(face), None) => Directions::Normal(face.clone()),
+            (None, directions) => Directions::Axes(among(directions.as_deref().unwrap_or(&[1, 2, 3]))),
+        };
+        let bound = |bound: &NodeBoundSection| NodeBound {
+            place: bound.place.clone(),
+            component: bound.component - 1,
+            range: bound.range,
+        };
+        Ok(LatticeShape {
+            coordinates: self.coordinates(mesh)?,
+            control_points: self.control_points,
+            degrees: self.degrees.unwrap_or(usual),
+            directions,
+            region: self.region.clone(),
+            fixed: self.fixed.clone(),
+            hold_supports: self.hold_supports,
+            symmetric: among(&self.symmetric),
+            frozen: self.frozen,
+            displacement: self.displacement,
+            node_bounds: self.bounds.iter().map(bound).collect(),
+            volume: self.volume,
+        })
+    }
+
+    fn coordinates(&self, mesh: &Mesh) -> Result<Coordinates, SceneError> {
+        let given = [self.bounds_of_box.is_some(), self.corner.is_some(), self.cylinder.is_some()];
+        if given.iter().filter(|given| **given).count() > 1 || self.corner.is_some() != self.edges.is_some() {
+            let allowed = "one of box, corner with edges, and cylinder";
+            return Err(SceneError::out_of_range("lattice.box", "two extents of the lattice, or half of one", allowed));
+        }
+        if let (Some(corner), Some(edges)) = (self.corner, self.edges) {
+            return Ok(Coordinates::Cartesian { corner, edges });
+        }
+        if let Some(CylinderSection { point, axis, zero, radius, angle, height }) = self.cylinder {
+            let ranges = [radius, angle.map(f64::to_radians), height];
+            return Ok(Coordinates::Cylindrical { point, axis, zero, ranges });
+        }
+        let [least, most] = self.bounds_of_box.map_or_else(|| self.box_around(mesh), Ok)?;
+        if (0..3).any(|axis| least[axis] >= most[axis]) {
+            let value = format!("[{least:?}, {most:?}]");
+            return Err(SceneError::out_of_range("lattice.box", value, "the corner of least coordinates first (mm)"));
+        }
+        let edge = |axis: usize| std::array::from_fn(|k| if k == axis { most[axis] - least[axis] } else { 0.0 });
+        Ok(Coordinates::Cartesian { corner: least, edges: [edge(0), edge(1), edge(2)] })
+    }
+
+    /// The box around the region, or around the face that moves along its normal, or around the body.
+    fn box_around(&self, mesh: &Mesh) -> Result<[[f64; 3]; 2], SceneError> {
+        let mut nodes = Vec::new();
+        for name in self.region.iter().chain(&self.normal) {
+            nodes.extend(nodes_of("lattice.region", name, mesh)?);
+        }
+        if nodes.is_empty() {
+            nodes = (0..mesh.node_count() as u32).collect();
+        }
+        let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for node in nodes {
+            for (axis, x) in mesh.nodes()[node as usize].into_iter().enumerate() {
+                (least[axis], most[axis]) = (least[axis].min(x), most[axis].max(x));
+            }
+        }
+        let size = (0..3).map(|axis| most[axis] - least[axis]).fold(0.0, f64::max);
+        Ok([least.map(|x| x - MARGIN * size), most.map(|x| x + MARGIN * size)])
+    }
+}
+
+/// Which of three coordinates a list counted from 1 names.
+fn among(list: &[usize]) -> [bool; 3] {
+    [1, 2, 3].map(|axis| list.contains(&axis))
+}
