@@ -14,13 +14,9 @@ use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("name the folder to write to")?);
-    let mut scene = hertz()?;
-    scene.mesh = [8; 3];
-    let shape = ContactShape::new(scene, SolverKind::Newton)?;
-    let cost = PressureCost::new(
-        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
-        &shape.problem().boundary,
-    )?;
+    let shape = ContactShape::new(hertz()?.with_bricks([8; 3], [2; 3]), SolverKind::Newton)?;
+    let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+    let cost = PressureCost::new(measure, shape.problem())?;
     let start = shape.start();
     let objective = CompositeObjective::new(shape, cost);
     let (first, subgradient) = solved(&objective, &start)?;
@@ -46,10 +42,10 @@ fn solved(
 ) -> Result<(Fields, Vector), Box<dyn Error>> {
     let shape = objective.solver();
     let state = shape.solve(control, None, Accuracy::TIGHTEST)?;
-    let (heights, _) = shape.height_sensitivity(&state, &objective.state_dual(&state))?;
-    let subgradient = Vector::from_vec(shape.problem().height_map.pull_back(&heights));
+    let (positions, _) = shape.position_sensitivity(&state, &objective.cost_gradient(control, &state).state)?;
+    let subgradient = Vector::from_vec(shape.problem().map.pull_back(&positions));
     let mut fields = shape.fields(&state)?;
-    fields.contact.sensitivity = Some(heights);
+    fields.contact.set_sensitivity(&positions);
     println!("Θ = {:.6e}, largest pressure {:.0} MPa", objective.value(&state), shape.outputs(&state).max());
     Ok((fields, subgradient))
 }

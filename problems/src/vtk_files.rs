@@ -3,21 +3,22 @@
 //! | array | where | unit | meaning |
 //! |---|---|---|---|
 //! | `displacement` | points of bodies and contact | mm | displacement u; "warp by vector" shows the deformed shape |
-//! | `von_mises_nodal` | points of bodies | MPa | mean of `von_mises` over the adjoining bricks, weighted by volume |
+//! | `von_mises_nodal` | points of bodies | MPa | mean of `von_mises` over the adjoining cells, weighted by volume |
 //! | `body` | cells of bodies | – | 1 lower, 2 upper |
 //! | `subdomain` | cells of bodies | – | subdomain of the total FETI tearing, through all bodies; one per body if not torn |
-//! | `stress` | cells of bodies | MPa | σ at the centre of the brick, components XX, YY, ZZ, XY, YZ, XZ |
-//! | `von_mises` | cells of bodies | MPa | von Mises stress at the centre of the brick |
+//! | `stress` | cells of bodies | MPa | σ at the centre of the cell, components XX, YY, ZZ, XY, YZ, XZ |
+//! | `von_mises` | cells of bodies | MPa | von Mises stress at the centre of the cell |
 //! | `pressure` | points of contact | MPa | λ_N/A, compression positive |
-//! | `traction` | points of contact | MPa | (λ_T/A, 0), what the lower body exerts above; only with friction |
+//! | `normal` | points of contact | – | unit normal from the lower body outwards |
+//! | `traction` | points of contact | MPa | λ_T/A, what the lower body exerts above; only with friction |
 //! | `slip` | points of contact | mm | tangential jump, lower less upper body; only with friction |
 //! | `status` | points of contact | – | 0 open, 1 stick, 2 slip (closed and free to slide, if there is no friction) |
 //! | `area` | points of contact | mm² | tributary area A; Σ pressure·A is the normal force |
 //! | `gap` | points of contact | mm | gap before loading |
 //! | `remaining_gap` | points of contact | mm | gap under load |
-//! | `sensitivity` | points of contact | unit of J per mm | ∂J/∂(height of the node); only if asked for |
+//! | `sensitivity` | points of contact | unit of J per mm | n·∂J/∂x of the node; only if asked for |
 
-use contact::body::mesh::Grid;
+use contact::body::mesh::CellKind;
 use contact::equilibrium::ContactStatus;
 use contact::fields::{BodyFields, ContactFields, Fields};
 use exchange::vtk::{Array, Cell, Entry, Note, UnstructuredGrid, Values, VtkError, collection, unstructured};
@@ -112,7 +113,7 @@ pub fn state_files(index: usize, state: &FieldState<'_>) -> Result<StateFiles, F
         return Err(unusable(index, name));
     }
     let (mut files, mut entries) = (Vec::new(), Vec::new());
-    let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact))];
+    let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact, &fields.bodies[0]))];
     for (part, (kind, grid)) in parts.into_iter().enumerate() {
         let (grid, file) = (UnstructuredGrid { notes: notes.to_vec(), ..grid }, format!("{name}_{kind}.vtu"));
         let text = unstructured(&grid).map_err(|source| FieldsError::File { state: name.to_owned(), source })?;
@@ -127,26 +128,28 @@ fn unusable(index: usize, name: &str) -> FieldsError {
     FieldsError::Name { index, name: name.to_owned(), allowed }
 }
 
-/// Corners of a brick in the order of [`contact::body::elasticity::brick`] that VTK's hexahedron takes one after the
-/// other.
-const HEXAHEDRON: [usize; 8] = [0, 4, 6, 2, 1, 5, 7, 3];
+/// Nodes of a tetrahedron of second order that VTK takes one after the other: Gmsh has its last two edges the other way.
+const TETRAHEDRON: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
 
 /// All bodies as one grid; bodies share no points.
 fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
     let (mut points, mut cells, mut body_numbers) = (Vec::new(), Vec::new(), Vec::new());
     for (number, body) in (1..).zip(bodies) {
-        let (grid, first) = (body.block.grid, points.len());
-        points.extend(body.block.points());
-        cells.extend(grid.bricks().map(|brick| {
-            let corners = grid.brick_nodes(brick);
-            Cell::Hexahedron(HEXAHEDRON.map(|corner| first + corners[corner]))
+        let first = points.len();
+        points.extend(body.positions.iter().copied());
+        cells.extend(body.mesh.cells().map(|cell| {
+            let node = |local: usize| first + cell.nodes[local] as usize;
+            match cell.kind {
+                CellKind::Hex8 => Cell::Hexahedron(std::array::from_fn(node)),
+                CellKind::Tet10 => Cell::QuadraticTetrahedron(TETRAHEDRON.map(node)),
+            }
         }));
-        body_numbers.extend(std::iter::repeat_n(number, grid.brick_count()));
+        body_numbers.extend(std::iter::repeat_n(number, body.mesh.cell_count()));
     }
     let subdomains = bodies.iter().flat_map(|body| &body.subdomain).map(|&subdomain| subdomain as i32).collect();
     UnstructuredGrid {
         description: "Bodies, undeformed. Lengths in mm, stresses in MPa.\n\
-            body: 1 lower, 2 upper. stress: at the centre of the brick, order XX YY ZZ XY YZ XZ."
+            body: 1 lower, 2 upper. stress: at the centre of the cell, order XX YY ZZ XY YZ XZ."
             .to_owned(),
         notes: Vec::new(),
         points,
@@ -169,45 +172,52 @@ fn joined<T: Copy>(bodies: &[BodyFields], field: impl Fn(&BodyFields) -> &Vec<T>
     bodies.iter().flat_map(|body| field(body).iter().copied()).collect()
 }
 
-/// The contact boundary as quadrilaterals whose normals point upwards.
-fn contact(contact: &ContactFields) -> UnstructuredGrid {
-    let status = contact.status.iter().map(|&status| status_code(status)).collect();
-    let flat =
-        |pairs: &[[f64; 2]]| Values::Vectors(pairs.iter().map(|&[first, second]| [first, second, 0.0]).collect());
+/// The contact boundary as triangles and quadrilaterals whose normals point outwards. Where supports hold a node along
+/// its normal, there is no contact node: it is open, without force, and has no gap.
+fn contact(contact: &ContactFields, lower: &BodyFields) -> UnstructuredGrid {
+    let facets = &contact.facets;
+    let numbers = |values: &[f64]| Values::Scalars(spread(contact, values, 0.0));
+    let vectors = |values: &[[f64; 3]]| Values::Vectors(spread(contact, values, [0.0; 3]));
+    let at_nodes = |values: &[[f64; 3]]| -> Vec<[f64; 3]> {
+        facets.nodes.iter().map(|&node| values[node as usize]).collect()
+    };
+    let status: Vec<i32> = contact.status.iter().map(|&status| status_code(status)).collect();
     let mut point_data = vec![
-        Array::new("displacement", "mm", Values::Vectors(contact.displacement.clone())),
-        Array::new("pressure", "MPa", Values::Scalars(contact.pressure.clone())),
-        Array::new("status", "", Values::Integers(status)),
-        Array::new("area", "mm^2", Values::Scalars(contact.area.clone())),
-        Array::new("gap", "mm", Values::Scalars(contact.gap.clone())),
-        Array::new("remaining_gap", "mm", Values::Scalars(contact.remaining_gap.clone())),
+        Array::new("displacement", "mm", Values::Vectors(at_nodes(&lower.displacement))),
+        Array::new("normal", "", vectors(&contact.normal)),
+        Array::new("pressure", "MPa", numbers(&contact.pressure)),
+        Array::new("status", "", Values::Integers(spread(contact, &status, 0))),
+        Array::new("area", "mm^2", numbers(&contact.area)),
+        Array::new("gap", "mm", numbers(&contact.gap)),
+        Array::new("remaining_gap", "mm", numbers(&contact.remaining_gap)),
     ];
-    for (name, unit, pairs) in [("traction", "MPa", &contact.traction), ("slip", "mm", &contact.slip)] {
-        point_data.extend(pairs.as_deref().map(|pairs| Array::new(name, unit, flat(pairs))));
+    for (name, unit, values) in [("traction", "MPa", &contact.traction), ("slip", "mm", &contact.slip)] {
+        point_data.extend(values.as_deref().map(|values| Array::new(name, unit, vectors(values))));
     }
     // Its unit is that of the objective per mm, which the fields do not know.
-    let sensitivity = |values| Array::new("sensitivity", "", Values::Scalars(values));
-    point_data.extend(contact.sensitivity.clone().map(sensitivity));
+    let sensitivity = contact.sensitivity.as_deref();
+    point_data.extend(sensitivity.map(|values| Array::new("sensitivity", "", numbers(values))));
+    let facet = |nodes: &Vec<usize>| match nodes[..] {
+        [a, b, c] => Some(Cell::Triangle([a, b, c])),
+        [a, b, c, d] => Some(Cell::Quad([a, b, c, d])),
+        _ => None,
+    };
     UnstructuredGrid {
         description: "Contact boundary of the lower body, undeformed. Lengths in mm, areas in mm^2, stresses in MPa.\n\
             status: 0 open, 1 stick, 2 slip. pressure times area: normal force of the node, N.\n\
-            sensitivity: derivative of the objective by the height of the node."
+            sensitivity: derivative of the objective by the position of the node along its normal."
             .to_owned(),
         notes: Vec::new(),
-        points: contact.position.clone(),
-        cells: quads(&contact.grid),
+        points: at_nodes(&lower.positions),
+        cells: facets.facets.iter().filter_map(facet).collect(),
         point_data,
         cell_data: Vec::new(),
     }
 }
 
-fn quads(grid: &Grid) -> Vec<Cell> {
-    let columns = (0..grid.cells[0]).flat_map(|i| (0..grid.cells[1]).map(move |j| (i, j)));
-    columns
-        .map(|(i, j)| {
-            Cell::Quad([grid.column(i, j), grid.column(i + 1, j), grid.column(i + 1, j + 1), grid.column(i, j + 1)])
-        })
-        .collect()
+/// Values at the corners of the facets from those at the contact nodes, `rest` at the others.
+fn spread<T: Copy>(contact: &ContactFields, values: &[T], rest: T) -> Vec<T> {
+    contact.facets.points.iter().map(|point| point.map_or(rest, |point| values[point])).collect()
 }
 
 /// 0 open, 1 stick, 2 slip.

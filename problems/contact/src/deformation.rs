@@ -1,7 +1,6 @@
 //! How far bodies are deformed, and how well shaped their cells are: the largest values over all nodes and cells.
 
-use crate::body::mesh::smallest_extent;
-use crate::equilibrium::SolvedBody;
+use crate::body::mesh::{Mesh, smallest_extent};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 /// Extreme values over some bodies.
@@ -25,17 +24,17 @@ impl Deformation {
     pub const NONE: Self =
         Self { displacement: 0.0, rotation: 0.0, strain: 0.0, scaled_jacobian: f64::INFINITY, extent: f64::INFINITY };
 
-    /// The deformation of a body.
-    pub fn of(body: &SolvedBody) -> Self {
-        let lengths = body.displacement.iter().map(|u| u[0].hypot(u[1]).hypot(u[2]));
+    /// The deformation of a body with given positions and displacements of its nodes, mm.
+    pub fn of(mesh: &Mesh, positions: &[[f64; 3]], displacement: &[[f64; 3]]) -> Self {
+        let lengths = displacement.iter().map(|u| u[0].hypot(u[1]).hypot(u[2]));
         let mut found = Self {
             displacement: lengths.fold(0.0, f64::max),
-            extent: smallest_extent(&body.positions),
+            extent: smallest_extent(positions),
             ..Self::NONE
         };
-        for cell in 0..body.mesh.cell_count() {
-            let nodes = body.mesh.cell_nodes(cell, &body.positions);
-            let gradient = nodes.gradient(&body.mesh.cell_values(cell, &body.displacement));
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell_nodes(cell, positions);
+            let gradient = nodes.gradient(&mesh.cell_values(cell, displacement));
             let gradient = Matrix3::from_fn(|i, j| gradient[i][j]);
             let skew = (gradient - gradient.transpose()) * 0.5;
             let strain = SymmetricEigen::new((gradient + gradient.transpose()) * 0.5).eigenvalues.amax();
@@ -63,7 +62,6 @@ impl Deformation {
 mod tests {
     use super::*;
     use crate::body::mesh::{Grid, block};
-    use std::sync::Arc;
 
     #[test]
     fn a_uniform_strain_is_found_as_it_is() {
@@ -71,15 +69,9 @@ mod tests {
         let columns = grid.column_count();
         let mesh = block(&grid, [1; 3], &vec![1.0; columns], &vec![6.0; columns]).expect("a block");
         // Compressed along x₃ by 3 %, stretched along x₁ by 2 %.
-        let displacement = mesh.nodes().iter().map(|[x1, _, x3]| [0.02 * x1, 0.0, -0.03 * x3]).collect();
-        let body = SolvedBody {
-            positions: Arc::new(mesh.nodes().to_vec()),
-            subdomains: vec![0; mesh.cell_count()],
-            mesh: Arc::new(mesh),
-            displacement,
-            gluing_defect: 0.0,
-        };
-        let found = Deformation::NONE.and(Deformation::of(&body));
+        let displacement: Vec<[f64; 3]> =
+            mesh.nodes().iter().map(|[x1, _, x3]| [0.02 * x1, 0.0, -0.03 * x3]).collect();
+        let found = Deformation::NONE.and(Deformation::of(&mesh, mesh.nodes(), &displacement));
         // Rounding of numbers near one.
         assert!((found.strain - 0.03).abs() < 1e-14 && found.rotation < 1e-14, "{found:?}");
         assert!((found.displacement - 0.08_f64.hypot(0.18)).abs() < 1e-14, "{found:?}");

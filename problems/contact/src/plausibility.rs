@@ -119,7 +119,7 @@ fn locking(problem: &ContactProblem, found: &mut Vec<Warning>) {
 
 /// Displacement, rotation, strain and the shape of the cells.
 fn deformation(bodies: &[SolvedBody], found: &mut Vec<Warning>) {
-    let all = bodies.iter().map(Deformation::of);
+    let all = bodies.iter().map(|body| Deformation::of(&body.mesh, &body.positions, &body.displacement));
     let Deformation { displacement, rotation, strain, scaled_jacobian, extent } =
         all.fold(Deformation::NONE, Deformation::and);
     warn(found, displacement > MAX_DISPLACEMENT * extent, "large-displacement", || {

@@ -53,6 +53,11 @@ impl View {
         Self { azimuth: y.atan2(x) + TURN, elevation: if z < -MIN_PART * length { -RISE } else { RISE } }
     }
 
+    /// Unit vector from the bodies towards the viewer.
+    pub fn towards_viewer(&self) -> [f64; 3] {
+        self.directions()[2]
+    }
+
     /// r, u and w of the head of the file.
     fn directions(&self) -> [Point; 3] {
         let ((sin_turn, cos_turn), (sin_rise, cos_rise)) = (self.azimuth.sin_cos(), self.elevation.sin_cos());

@@ -1,10 +1,11 @@
-//! Control files: a JSON array of rows of heights.
+//! Control files: a JSON array of rows of heights, or one of displacements of the control points of a lattice.
 
 use crate::commands::arguments::HeightError;
 use crate::commands::failure::Failure;
 use crate::commands::folder::file_error;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
+use contact::shape::ShapeScene;
 use nonsmooth::Vector;
 use nonsmooth::verify::seeded_direction;
 use scene_file::{Case, read_text};
@@ -26,13 +27,13 @@ pub fn load(
     case: &Case,
     (option, file): (&str, Option<&Path>),
 ) -> Result<Vector, SceneError> {
-    let place = file.map_or_else(|| "surface.start".to_owned(), |_| option.to_owned());
+    let place = file.map_or_else(|| "the start of the scene".to_owned(), |_| option.to_owned());
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
-    let counts = problem.scene.control_points;
+    let shape = &problem.scene.shape;
     let controls = match (file, &case.start) {
-        (Some(file), _) => read(file, counts).map_err(within)?,
+        (Some(file), _) => read(file, Layout::of(shape)).map_err(within)?,
         (None, Some(controls)) => Vector::from_column_slice(controls),
-        (None, None) => Vector::from_element(counts.iter().product(), problem.scene.start_height),
+        (None, None) => Vector::from_vec(shape.start()),
     };
     let set = &problem.admissible;
     let checked = if option == START_OPTION { set.check(&controls) } else { set.check_shape(&controls) };
@@ -44,23 +45,54 @@ pub fn load(
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file; as [`parse`].
-pub fn read(file: &Path, counts: [usize; 2]) -> Result<Vector, SceneError> {
+pub fn read(file: &Path, layout: Layout) -> Result<Vector, SceneError> {
     let text = read_text(file, LARGEST_FILE)?;
-    parse(&text, &file.display().to_string(), counts)
+    parse(&text, &file.display().to_string(), layout)
 }
 
-/// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid
-/// that they are made for; a plain array of numbers does not.
+/// How the controls of a shape stand in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// Heights of so many control points along x₁ and x₂, in rows.
+    Grid([usize; 2]),
+    /// So many displacements, one after the other.
+    Plain(usize),
+}
+
+impl Layout {
+    /// The layout of a shape.
+    pub fn of(shape: &ShapeScene) -> Self {
+        match shape {
+            ShapeScene::Heights(heights) => Self::Grid(heights.control_points),
+            ShapeScene::Lattice(_) => Self::Plain(shape.control_count()),
+        }
+    }
+
+    /// Number of controls.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Grid(counts) => counts.iter().product(),
+            Self::Plain(count) => count,
+        }
+    }
+}
+
+/// The controls in a text; `name` stands in messages. Rows say the grid that they are made for; a plain array of numbers
+/// does not.
 ///
 /// # Errors
 /// [`SceneError`] for a text that holds neither, another grid, a wrong count, numbers that are not finite.
-pub fn parse(text: &str, name: &str, counts @ [n1, n2]: [usize; 2]) -> Result<Vector, SceneError> {
-    let expected = format!("expected {n1} arrays of {n2} numbers, or one array of {}", n1 * n2);
+pub fn parse(text: &str, name: &str, layout: Layout) -> Result<Vector, SceneError> {
+    let count = layout.count();
+    let expected = match layout {
+        Layout::Grid([n1, n2]) => format!("expected {n1} arrays of {n2} numbers, or one array of {count}"),
+        Layout::Plain(_) => format!("expected one array of {count} numbers"),
+    };
     let unreadable = |reason: String| file_error(Path::new(name), format!("{reason}; {expected}"));
     let rows: Rows = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
     let values = match rows {
         Rows::Plain(values) => {
-            check_count(values.len(), n1 * n2, name)?;
+            check_count(values.len(), count, name)?;
             values
         }
         Rows::Grid(rows) => {
@@ -68,11 +100,12 @@ pub fn parse(text: &str, name: &str, counts @ [n1, n2]: [usize; 2]) -> Result<Ve
             if rows.iter().any(|row| row.len() != found[1]) {
                 return Err(unreadable("rows of different lengths".into()));
             }
+            let Layout::Grid(counts) = layout else { return Err(unreadable("rows of controls".into())) };
             check_grid(found, counts, name)?;
             rows.concat()
         }
     };
-    let mut controls = Vector::zeros(n1 * n2);
+    let mut controls = Vector::zeros(count);
     for (index, value) in values.into_iter().enumerate() {
         controls[index] = value.filter(|value| value.is_finite()).ok_or_else(|| {
             SceneError::out_of_range(format!("control {index} in {name}"), "null", "a finite number (mm)")
@@ -89,20 +122,35 @@ enum Rows {
     Grid(Vec<Vec<Option<f64>>>),
 }
 
-/// Controls as a control file holds them: one row per control point along x₁.
+/// Controls as a control file holds them: one row per control point along x₁, or one list.
 ///
 /// # Errors
 /// [`Failure::Computation`] for a number that JSON does not have.
-pub fn written(controls: &[f64], [_, along]: [usize; 2]) -> Result<String, Failure> {
+pub fn written(controls: &[f64], layout: Layout) -> Result<String, Failure> {
+    let along = match layout {
+        Layout::Grid([_, along]) => along,
+        Layout::Plain(_) => return serde_json::to_string(controls).map(|text| text + "\n").map_err(Failure::computation),
+    };
     let rows: Result<Vec<String>, _> = controls.chunks(along.max(1)).map(serde_json::to_string).collect();
     Ok(format!("[\n  {}\n]\n", rows.map_err(Failure::computation)?.join(",\n  ")))
+}
+
+/// Refuses controls of another layout; `name` says where they stand.
+///
+/// # Errors
+/// [`SceneError`] with both layouts.
+pub fn check_layout(found: Layout, expected: Layout, name: &str) -> Result<(), SceneError> {
+    match (found, expected) {
+        (Layout::Grid(found), Layout::Grid(expected)) => check_grid(found, expected, name),
+        _ => check_count(found.count(), expected.count(), name),
+    }
 }
 
 /// Refuses controls of another grid; `name` says where they stand.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] with both grids.
-pub fn check_grid(found: [usize; 2], expected: [usize; 2], name: &str) -> Result<(), SceneError> {
+fn check_grid(found: [usize; 2], expected: [usize; 2], name: &str) -> Result<(), SceneError> {
     let words = |[n1, n2]: [usize; 2]| format!("{n1}x{n2}");
     if found == expected {
         return Ok(());

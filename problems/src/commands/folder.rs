@@ -8,7 +8,7 @@ use crate::commands::register::{self, REGISTER, Register, UNFINISHED};
 use crate::commands::run_kind::{RUN, RunKind};
 use contact::error::SceneError;
 use figures::Figure;
-use scene_file::{Case, GRIDS};
+use scene_file::{Case, FILES};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -240,7 +240,7 @@ pub fn printed_with_files(
 
 /// Whether a file on the list of a folder is more than a preparation.
 fn is_result(name: &str) -> bool {
-    ![REGISTER, START, RUN, PROBE].contains(&name) && !GRIDS.contains(&name)
+    ![REGISTER, START, RUN, PROBE].contains(&name) && !FILES.contains(&name)
 }
 
 /// Why a folder with results is refused.

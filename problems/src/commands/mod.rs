@@ -20,6 +20,7 @@ mod folder;
 mod interrupt;
 mod loaded_scene;
 mod long_run;
+mod mesh_words;
 mod numbers;
 mod optimize;
 mod output;
@@ -38,7 +39,7 @@ mod verify;
 
 pub use arguments::Arguments;
 pub use command_line::{execute, execute_among, run, run_any_among};
-pub use controls::parse as parse_controls;
+pub use controls::{Layout, parse as parse_controls};
 pub use failure::{Failure, failed};
 pub use folder::{Folder, json, printed_with_files};
 pub use interrupt::leave_interrupts;

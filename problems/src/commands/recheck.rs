@@ -1,7 +1,7 @@
 //! `recheck`: norm and error of a certificate computed again from the files that an optimization has left.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::controls;
+use crate::commands::controls::{self, Layout};
 use crate::commands::facts::{Fact, Facts, Group, Value, line};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{SCENE, file_error, json};
@@ -112,7 +112,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let certificate = read(&folder.join("certificate.json"))?;
     let own = own_scene(loaded, folder)?;
     let case = own.as_ref().map_or(&loaded.case, |own| &own.case);
-    let controls = controls::read(&folder.join("controls.json"), case.scene.control_points)?;
+    let controls = controls::read(&folder.join("controls.json"), Layout::of(&case.scene.shape))?;
     let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };

@@ -26,8 +26,9 @@ pub fn differences(
     let mut found = Vec::new();
     collect(String::new(), (value(there)?, value(here)?), &mut found);
     // The degree that a file leaves out is the default one.
-    let same_spline = there.case.scene.surface == here.case.scene.surface;
-    let is_silent = |field: &str| field.ends_with(".file") || (same_spline && field == "surface.degree");
+    let spline = |scene: &LoadedScene| scene.case.scene.heights().map(|heights| heights.spline);
+    let same_spline = spline(there) == spline(here);
+    let is_silent = |field: &str| field.ends_with(".file") || field == "body.mesh" || (same_spline && field == "surface.degree");
     found.retain(|difference| !is_silent(&difference.field) && counts(&difference.field));
     Ok(found)
 }

@@ -50,14 +50,28 @@ const OPTIONS: [SceneOption; 14] = [
         "Subdomains of each body, per edge or along x1, x2 and x3; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2 does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge",
     ),
     option((BODIES, "friction", "MU"), &["friction"], "Coulomb friction coefficient"),
-    option((BODIES, "poisson-ratio", "NU"), &["lower.material.poisson_ratio"], "Poisson's ratio of the lower body"),
-    option((BODIES, "young-modulus", "E"), &["lower.material.young_modulus"], "Young's modulus of the lower body, MPa"),
+    SceneOption {
+        adapt: of_bodies,
+        ..option(
+            (BODIES, "poisson-ratio", "NU"),
+            &["lower.material.poisson_ratio", "body.material.poisson_ratio"],
+            "Poisson's ratio of the lower body, or of the body of a mesh",
+        )
+    },
+    SceneOption {
+        adapt: of_bodies,
+        ..option(
+            (BODIES, "young-modulus", "E"),
+            &["lower.material.young_modulus", "body.material.young_modulus"],
+            "Young's modulus of the lower body, or of the body of a mesh, MPa",
+        )
+    },
     SceneOption {
         adapt: of_bodies,
         ..option(
             (BODIES, "formulation", "NAME"),
-            &["lower.material.formulation", "upper.material.formulation"],
-            "How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials",
+            &["lower.material.formulation", "upper.material.formulation", "body.material.formulation"],
+            "How cells of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials",
         )
     },
     SceneOption {
@@ -145,7 +159,8 @@ fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
 
 /// The fields of a body that is not there are left out.
 fn of_bodies(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
-    settings.retain(|setting| file.upper.is_some() || !setting.path().starts_with("upper."));
+    let bodies = [("lower.", file.lower.is_some()), ("upper.", file.upper.is_some()), ("body.", file.body.is_some())];
+    settings.retain(|setting| bodies.iter().all(|(body, exists)| *exists || !setting.path().starts_with(body)));
     Ok(settings)
 }
 
@@ -161,16 +176,32 @@ fn factor(_: &'static [&'static str], text: &str) -> Settings {
 /// All loads times the factor in the text.
 fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings {
     let factor: f64 = text.parse().unwrap_or(f64::NAN);
-    let upper = file.upper.iter().map(|upper| ("upper", &upper.loads));
-    for (body, loads) in std::iter::once(("lower", &file.lower.loads)).chain(upper) {
+    let lower = file.lower.iter().map(|body| ("lower", &body.loads));
+    let upper = file.upper.iter().map(|body| ("upper", &body.loads));
+    let body = file.body.iter().map(|body| ("body", &body.loads));
+    for (body, loads) in lower.chain(upper).chain(body) {
         for (index, load) in loads.iter().enumerate() {
-            let scaled = load.traction.map(|traction| factor * traction);
-            if let Some(axis) = scaled.iter().position(|traction| traction.abs() > LARGEST_TRACTION) {
-                let traction = load.traction[axis];
-                let allowed = format!("|traction| ≤ {LARGEST_TRACTION:e} MPa, here {factor:e} times {traction:e}");
-                return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
+            let mut scale = |name: &str, vector: Option<&[f64]>| {
+                let Some(vector) = vector else { return Ok(()) };
+                let scaled: Vec<f64> = vector.iter().map(|part| factor * part).collect();
+                if let Some(axis) = scaled.iter().position(|part| part.abs() > LARGEST_TRACTION) {
+                    let part = vector[axis];
+                    let allowed = format!("|{name}| ≤ {LARGEST_TRACTION:e}, here {factor:e} times {part:e}");
+                    return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
+                }
+                let value = if name == "pressure" { format!("{:?}", scaled[0]) } else { format!("{scaled:?}") };
+                settings.push(Setting::read(&format!("{body}.loads[{index}].{name}"), &value)?);
+                Ok(())
+            };
+            scale("traction", load.traction.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("pressure", load.pressure.as_ref().map(std::slice::from_ref))?;
+            scale("force", load.force.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("moment", load.moment.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("body_force", load.body_force.as_ref().map(<[f64; 3]>::as_slice))?;
+            if let Some(texts) = &load.formula {
+                let texts: Vec<String> = texts.iter().map(|text| format!("{factor:?}*({text})")).collect();
+                settings.push(Setting::read(&format!("{body}.loads[{index}].formula"), &format!("{texts:?}"))?);
             }
-            settings.push(Setting::read(&format!("{body}.loads[{index}].traction"), &format!("{scaled:?}"))?);
         }
     }
     Ok(settings)

@@ -70,7 +70,7 @@ pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
 /// A shape, its state as accurate as rounding allows, and the objective there.
 #[derive(Debug)]
 pub struct SolvedShape {
-    /// Control heights of the shape, mm.
+    /// Controls of the shape, mm.
     pub controls: Vector,
     /// The contact state of the shape.
     pub state: ContactState,
@@ -105,12 +105,13 @@ impl SolvedShape {
         self.above_limit().is_none_or(|above| above == 0.0)
     }
 
-    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the position of every contact node along its
+    /// normal, which
     /// takes an adjoint, if it is asked for.
     pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.solver().fields(&self.state)?;
         if sensitivities {
-            fields.contact.sensitivity = Some(objective.height_sensitivity(&self.controls, &self.state)?);
+            fields.contact.set_sensitivity(&objective.position_sensitivity(&self.controls, &self.state)?);
         }
         Ok(fields)
     }

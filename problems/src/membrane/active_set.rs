@@ -45,7 +45,12 @@ impl ReducedMembrane {
     pub fn new(grid: &MembraneGrid) -> Result<Self, FactorizationError> {
         let neighbours = (0..grid.node_count()).map(|index| grid.neighbours(index).collect());
         let pattern = Arc::new(LowerPattern::from_columns(neighbours.collect()));
-        let order = nested_dissection([grid.inner(), grid.inner(), 1]);
+        let count = grid.node_count();
+        let graph: Vec<Vec<u32>> = (0..count)
+            .map(|index| grid.neighbours(index).filter(|other| *other != index).map(|other| other as u32).collect())
+            .collect();
+        let place = |index: usize| [(index / grid.inner()) as f64, (index % grid.inner()) as f64, 0.0];
+        let order = nested_dissection(&(0..count).map(place).collect::<Vec<_>>(), &graph, &[]);
         let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern), order)?);
         Ok(Self { pattern, symbolic })
     }

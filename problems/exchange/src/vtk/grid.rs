@@ -8,8 +8,12 @@ use thiserror::Error;
 pub enum Cell {
     /// VTK type 12: the four points of the lower face counterclockwise as seen from above, then those above them.
     Hexahedron([usize; 8]),
+    /// VTK type 24: corners, then the middles of the edges 01, 12, 02, 03, 13, 23.
+    QuadraticTetrahedron([usize; 10]),
     /// VTK type 9: four points in order around the face.
     Quad([usize; 4]),
+    /// VTK type 5: three points in order around the face.
+    Triangle([usize; 3]),
 }
 
 impl Cell {
@@ -17,7 +21,9 @@ impl Cell {
     pub fn kind(&self) -> u8 {
         match self {
             Self::Hexahedron(_) => 12,
+            Self::QuadraticTetrahedron(_) => 24,
             Self::Quad(_) => 9,
+            Self::Triangle(_) => 5,
         }
     }
 
@@ -25,7 +31,9 @@ impl Cell {
     pub fn points(&self) -> &[usize] {
         match self {
             Self::Hexahedron(points) => points,
+            Self::QuadraticTetrahedron(points) => points,
             Self::Quad(points) => points,
+            Self::Triangle(points) => points,
         }
     }
 }

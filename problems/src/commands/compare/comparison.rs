@@ -4,6 +4,7 @@ use crate::commands::facts::{Fact, Facts, Group};
 use crate::commands::failure::Failure;
 use crate::commands::numbers::{number, raised, rounded};
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::report::Relief;
 use crate::commands::optimize::summary::ending;
 use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::SolvedShape;
@@ -30,7 +31,7 @@ pub struct Comparison<'a> {
 /// How far two surfaces are apart, mm.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct SurfaceDifference {
-    /// Difference of the mean heights.
+    /// Difference of the mean heights, or of the mean outward displacements by a lattice.
     pub mean: f64,
     /// Root mean square of the rest.
     pub shape: f64,
@@ -40,7 +41,7 @@ pub struct SurfaceDifference {
 
 impl Comparison<'_> {
     fn friction(&self) -> f64 {
-        self.runs[0].objective.solver().problem().scene.friction
+        self.runs[0].objective.solver().problem().scene.contact.friction
     }
 
     /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where
@@ -57,8 +58,9 @@ impl Comparison<'_> {
 
     /// The distance of the two optimized surfaces over the nodes of the contact boundary.
     pub fn surface_difference(&self) -> SurfaceDifference {
-        let map = &self.runs[0].objective.solver().problem().height_map;
-        let [with, without] = self.own.map(|shapes| map.heights(shapes[1].controls.as_slice()));
+        let relief = Relief::new(self.runs[0].objective.solver().problem());
+        let map = &self.runs[0].objective.solver().problem().map;
+        let [with, without] = self.own.map(|shapes| relief.outward(&map.positions(shapes[1].controls.as_slice())));
         let differences: Vec<f64> = without.iter().zip(&with).map(|(a, b)| a - b).collect();
         let (mean, shape) = mean_and_deviation(&differences);
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }

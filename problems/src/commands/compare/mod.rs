@@ -20,7 +20,7 @@ use contact::error::SceneError;
 use std::path::Path;
 
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
-    let friction = loaded.case.scene.friction;
+    let friction = loaded.case.scene.contact.friction;
     if friction == 0.0 {
         let allowed = "a coefficient > 0 to compare with no friction at all";
         return Err(session.arguments.changes().blame(SceneError::out_of_range("friction", 0, allowed)).into());
@@ -78,10 +78,13 @@ fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScen
     let part = |name: &str, friction: f64| {
         loaded.changed(|scene| {
             scene.friction = friction;
+            if friction == 0.0 {
+                scene.contact.regions.clear();
+            }
             scene.output.folder = folder.map(|folder| folder.folder.path().join(name).display().to_string());
         })
     };
-    Ok([part(COMPARED[0], loaded.case.scene.friction)?, part(COMPARED[1], 0.0)?])
+    Ok([part(COMPARED[0], loaded.case.scene.contact.friction)?, part(COMPARED[1], 0.0)?])
 }
 
 /// Refuses runs that cannot be continued, before anything is changed.

@@ -3,6 +3,7 @@
 use crate::commands::export::files::OutputFile;
 use crate::commands::export::shape::failure;
 use crate::commands::failure::Failure;
+use crate::commands::mesh_words;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::friction_problem::{FrictionProblem, ROWS};
@@ -25,12 +26,13 @@ struct FrictionJson<'a> {
     friction: &'a [f64],
     places: &'a [[f64; 3]],
     areas: &'a [f64],
+    normals: &'a [[f64; 3]],
     unknowns: &'a [[usize; 3]],
 }
 
 const EQUATIONS: &str = "K u = f + H^T r; w = H u + (g, 0, 0) per contact node; 0 <= r_N, w_N; r_N w_N = 0; |r_T| <= mu r_N; \
                          w_T = -k r_T with k >= 0, k = 0 where |r_T| < mu r_N";
-const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component";
+const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component (0 to 2: along x1, x2, x3; at nodes held along other directions, along the free ones)";
 
 /// Refuses a mesh whose matrices would be too large.
 ///
@@ -38,22 +40,22 @@ const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in m
 /// [`SceneError::OutOfRange`] naming the mesh.
 pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
     let most = FrictionProblem::most_unknowns(problem);
-    let found = format!("{:?}", problem.scene.mesh);
+    let found = mesh_words::mesh(&problem.scene);
     let allowed =
         format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
-    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range("mesh.bricks", found, allowed)) }
+    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range("the mesh", found, allowed)) }
 }
 
 /// The matrices of a shape.
 ///
 /// # Errors
-/// [`Failure::Input`] for an inverted brick.
+/// [`Failure::Input`] for an inverted cell.
 pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
     let matrices = FrictionProblem::new(problem, controls).map_err(|error| Failure::Input(error.to_string()))?;
     let (unknowns, nodes) = (matrices.unknowns.len(), matrices.gaps.len());
     let words = format!("{}: stiffness K, N/mm; lower triangle", problem.scene.name);
     let stiffness = symmetric(unknowns, &matrices.stiffness, &words).map_err(failure)?;
-    let words = format!("{}: contact matrix H; rows per contact node: normal, x1, x2", problem.scene.name);
+    let words = format!("{}: contact matrix H; rows per contact node: normal, two tangents", problem.scene.name);
     let contact = general([ROWS * nodes, unknowns], &matrices.contact, &words).map_err(failure)?;
     let lists = FrictionJson {
         equations: EQUATIONS,
@@ -65,6 +67,7 @@ pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Output
         friction: &matrices.friction,
         places: &matrices.places,
         areas: &matrices.areas,
+        normals: &matrices.normals,
         unknowns: &matrices.unknowns,
     };
     let lists = serde_json::to_string(&lists).map_err(Failure::computation)? + "\n";

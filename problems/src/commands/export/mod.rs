@@ -2,14 +2,17 @@
 
 mod files;
 mod friction;
+mod mesh;
 pub mod options;
 mod run;
 mod shape;
 
-use crate::commands::controls;
+use crate::commands::controls::{self, Layout};
 use crate::commands::export::files::{Origin, OutputFile};
+use crate::commands::export::options::ExportOptions;
 use crate::commands::export::run::KeptRun;
-use crate::commands::failure::Failure;
+use crate::commands::export::shape::Block;
+use crate::commands::failure::{Failure, refused};
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::number;
@@ -56,17 +59,15 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     };
     let differences = run.filter(|_| options.friction_problem).map_or_else(Vec::new, |run| run.differences);
     problem.admissible.check_shape(&controls)?;
-    let heights = controls::written(controls.as_slice(), problem.scene.control_points)?;
-    let what = "the control heights; --controls and --start-controls take the file";
-    let mut files = vec![OutputFile::text("controls.json", heights, what)];
-    if options.stl || options.is_free() {
-        files.extend(shape::triangles(&problem, controls.as_slice(), options.tolerance())?);
+    let written = controls::written(controls.as_slice(), Layout::of(&problem.scene.shape))?;
+    let what = "the controls; --controls and --start-controls take the file";
+    let mut files = vec![OutputFile::text("controls.json", written, what)];
+    match Block::of(&problem.scene) {
+        Some(block) => files.extend(of_block(block, controls.as_slice(), options)?),
+        None => files.extend(of_mesh(&problem, controls.as_slice(), options)?),
     }
-    if options.step || options.is_free() {
-        files.extend(shape::splines(&problem, controls.as_slice())?);
-    }
-    if options.csv || options.is_free() {
-        files.push(shape::table(&problem, controls.as_slice())?);
+    if options.msh || (options.is_free() && problem.scene.blocks().is_none()) {
+        files.push(mesh::gmsh_file(&problem, controls.as_slice())?);
     }
     if options.friction_problem {
         files.extend(friction::matrices(&problem, controls.as_slice())?);
@@ -85,7 +86,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder: path.display().to_string(),
         shape: origin,
         differences: differences.iter().map(Difference::to_string).collect(),
-        tolerance: (options.stl || options.is_free()).then(|| options.tolerance()),
+        tolerance: ((options.stl || options.is_free()) && problem.scene.blocks().is_some()).then(|| options.tolerance()),
         files: files.iter().map(describe).collect(),
     };
     let text = arguments.printed(result.to_string(), json(&result)?);
@@ -95,6 +96,39 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
             None => folder.write(file.name, &file.content),
         })
     })
+}
+
+/// The files of the shape of a block.
+fn of_block(block: Block<'_>, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
+    let mut files = Vec::new();
+    if options.stl || options.is_free() {
+        files.extend(shape::triangles(block, controls, options.tolerance())?);
+    }
+    if options.step || options.is_free() {
+        files.extend(shape::splines(block, controls)?);
+    }
+    if options.csv || options.is_free() {
+        files.push(shape::table(block, controls)?);
+    }
+    Ok(files)
+}
+
+/// The files of the shape of a mesh.
+fn of_mesh(problem: &ContactProblem, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
+    if options.step {
+        refused("--step", "for the height surface of a block; a mesh has --stl and --msh")?;
+    }
+    if options.tolerance.is_some() {
+        refused("--tolerance", "for the height surface of a block; triangles of a mesh lie between its nodes")?;
+    }
+    let mut files = Vec::new();
+    if options.stl || options.is_free() {
+        files.extend(mesh::triangles(problem, controls)?);
+    }
+    if options.csv || options.is_free() {
+        files.push(mesh::table(problem, controls));
+    }
+    Ok(files)
 }
 
 /// The shape that the command line or the scene names.

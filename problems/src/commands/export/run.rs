@@ -1,6 +1,6 @@
 //! The shape of an optimization in its folder: the optimum, the best one so far, or that of any evaluation.
 
-use crate::commands::controls;
+use crate::commands::controls::{self, Layout};
 use crate::commands::export::files::Origin;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, REPORT, SCENE, START, quoted};
@@ -16,8 +16,16 @@ use scene_file::{Case, SceneFile, read_text};
 use std::path::{Path, PathBuf};
 
 /// The fields of a scene that make its surfaces.
-const SURFACES: [&str; 6] =
-    ["size", "surface.spline", "surface.degree", "surface.control_points", "counter_surface", "upper.top"];
+const SURFACES: [&str; 8] = [
+    "size",
+    "surface.spline",
+    "surface.degree",
+    "surface.control_points",
+    "counter_surface",
+    "upper.top",
+    "body.unit",
+    "lattice",
+];
 /// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
 const NO_FRICTION_PROBLEM: [&str; 8] =
     ["name", "mesh", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
@@ -30,8 +38,8 @@ pub struct KeptRun {
     /// The folders of the journals that have been begun.
     parts: Vec<PathBuf>,
     kind: Kind,
-    /// Control points along x₁ and x₂.
-    control_points: [usize; 2],
+    /// How its controls stand in files.
+    layout: Layout,
     /// How its scene differs from that of the command in what makes a friction problem.
     pub differences: Vec<Difference>,
 }
@@ -71,19 +79,22 @@ impl KeptRun {
         let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
         let of_surface = differences(&own, loaded, |field| is_below(field, &SURFACES))?;
         let (there, here) = (&own.case.scene, &loaded.case.scene);
-        let another_grid = || {
-            (there.counter_surface != here.counter_surface).then(|| "the heights of counter_surface differ".to_owned())
+        let other_files = || match () {
+            () if there.counter_surface != here.counter_surface => Some("the heights of counter_surface differ".to_owned()),
+            () if there.blocks().is_none() && there.geometry != here.geometry => Some("the meshes differ".to_owned()),
+            () => None,
         };
-        if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(another_grid) {
+        if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(other_files) {
             let [scene, run] = [&path, folder].map(|path| quoted(path.display().to_string()));
             let hint = format!("take its own scene: contact3d {scene} export --run {run} --out DIR2");
             return refused(format!("is a run of another surface: {difference}; {hint}"));
         }
         let mut differences = differences(&own, loaded, |field| !is_below(field, &NO_FRICTION_PROBLEM))?;
         let own = own.case;
-        let mesh = mesh(&own, root, folder);
-        if mesh != loaded.case.scene.mesh {
-            differences.push(Difference::new("mesh.bricks", mesh.to_vec(), loaded.case.scene.mesh.to_vec()));
+        let bricks = |case: &Case| case.scene.blocks().map_or_else(Vec::new, |blocks| blocks.bricks.to_vec());
+        let [there, here] = [bricks(&last(&own, root, folder)), bricks(&loaded.case)];
+        if there != here {
+            differences.push(Difference::new("mesh.bricks", there, here));
         }
         let (kind, parts) = if root == folder {
             let places = stages(&own)
@@ -98,7 +109,7 @@ impl KeptRun {
         } else {
             (Kind::Part, vec![folder.to_owned()])
         };
-        Ok(Self { folder: folder.to_owned(), parts, kind, control_points: own.scene.control_points, differences })
+        Ok(Self { folder: folder.to_owned(), parts, kind, layout: Layout::of(&own.scene.shape), differences })
     }
 
     /// The shape of an evaluation, or the one that the run has found.
@@ -116,7 +127,7 @@ impl KeptRun {
 
     /// The shape that an ended run reports.
     fn optimum(&self) -> Result<(Vector, Origin), Failure> {
-        let controls = controls::read(&self.folder.join("controls.json"), self.control_points)?;
+        let controls = controls::read(&self.folder.join("controls.json"), self.layout)?;
         let report = read_text(&self.folder.join(REPORT), LARGEST_REPORT)?;
         let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
         let confirmed = report["termination"]["confirmed"] == true;
@@ -155,7 +166,7 @@ impl KeptRun {
     /// The controls of an evaluation.
     fn controls(&self, entry: &Entry) -> Result<Vector, SceneError> {
         let what = || format!("controls of evaluation {} in {}", entry.evaluation, self.folder.display());
-        let expected = self.control_points.iter().product();
+        let expected = self.layout.count();
         if entry.point.len() != expected {
             return Err(SceneError::WrongCount { what: what(), expected, found: entry.point.len() });
         }
@@ -191,11 +202,11 @@ impl KeptRun {
     }
 }
 
-/// The mesh of a run, or of its part in a folder: of several meshes, the last one that was begun.
-fn mesh(case: &Case, root: &Path, folder: &Path) -> [usize; 3] {
+/// The case of a run, or of its part in a folder: of several meshes, the last one that was begun.
+fn last(case: &Case, root: &Path, folder: &Path) -> Case {
     let of_folder = |stage: &MeshStage| stage.part.folder().is_some_and(|name| root.join(name) == folder);
     let stage = if root == folder { last_begun(case, root) } else { stages(case).into_iter().find(of_folder) };
-    stage.map_or(case.scene.mesh, |stage| stage.case.scene.mesh)
+    stage.map_or_else(|| case.clone(), |stage| stage.case)
 }
 
 /// The evaluations of a journal whose value is known.

@@ -1,6 +1,6 @@
 //! The folder of a run: what was asked for, so that the run can be continued from the folder alone.
 
-use crate::commands::controls;
+use crate::commands::controls::{self, Layout};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, SCENE, START, file_error, json, resume_command};
 use crate::commands::loaded_scene::LoadedScene;
@@ -37,7 +37,7 @@ struct Identity {
     version: String,
     /// The mesh of a coarse-to-fine optimization.
     stage: Option<String>,
-    /// Hashes of the start and of the grids of counter surface and wanted pressure.
+    /// Hashes of the start and of the files that the scene names.
     contents: BTreeMap<String, String>,
     scene: SceneFile,
 }
@@ -47,10 +47,11 @@ impl Identity {
         let mut scene = loaded.file.clone();
         let mut contents = BTreeMap::from([(START.to_owned(), hash(json(initial_controls)?.as_bytes()))]);
         // The start is known by its controls.
-        scene.surface.start = StartSection::Controls { heights: vec![] };
-        for (name, file) in scene.grids_mut() {
-            let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
-            contents.insert(name.to_owned(), hash(grid.as_bytes()));
+        if let Some(surface) = &mut scene.surface {
+            surface.start = StartSection::Controls { heights: vec![] };
+        }
+        for (name, file) in scene.files_mut() {
+            contents.insert(name.to_owned(), hash(&content(loaded, file)?));
             *file = name.to_owned();
         }
         (scene.optimizer, scene.output) = (OptimizerSection::default(), OutputSection::default());
@@ -115,13 +116,13 @@ impl RunFolder {
         claimed.iter().try_for_each(|name| folder.claim(name))?;
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let mut scene = loaded.file.clone();
-        for (name, file) in scene.grids_mut() {
-            folder.write(name, scene_file::read_grid(&loaded.folder().join(&*file))?)?;
+        for (name, file) in scene.files_mut() {
+            folder.write(name, content(loaded, file)?)?;
             *file = name.to_owned();
         }
         folder.write(RUN, kind.file()?)?;
-        let counts = loaded.file.surface.control_points;
-        folder.write(START, controls::written(initial_controls.as_slice(), counts)?)?;
+        let layout = Layout::of(&loaded.case.scene.shape);
+        folder.write(START, controls::written(initial_controls.as_slice(), layout)?)?;
         // With its scene, the folder holds a run.
         keep_scene(&folder, scene)?;
         let initial_controls = initial_controls.clone();
@@ -134,8 +135,8 @@ impl RunFolder {
     /// [`Failure::Input`] for a journal of another scene or, unless `new_version`, of another version of the program,
     /// and for fewer evaluations than it holds; any [`Failure`] of the folder.
     pub fn reopen(folder: Folder, loaded: &LoadedScene, new_version: bool) -> Result<Self, Failure> {
-        let counts = loaded.file.surface.control_points;
-        let initial_controls = controls::read(&folder.path().join(START), counts)?;
+        let layout = Layout::of(&loaded.case.scene.shape);
+        let initial_controls = controls::read(&folder.path().join(START), layout)?;
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let this = Self { folder, identity, initial_controls, resumed: true, new_version };
         for stage in stages(&loaded.case) {
@@ -223,6 +224,12 @@ impl RunFolder {
         let path = self.folder.path();
         stage.map_or_else(|| path.to_owned(), |stage| path.join(stage))
     }
+}
+
+/// What a file holds that a scene names.
+fn content(loaded: &LoadedScene, file: &str) -> Result<Vec<u8>, Failure> {
+    let path = loaded.folder().join(file);
+    std::fs::read(&path).map_err(|error| file_error(&path, error).into())
 }
 
 /// Writes the scene file, without the folder: a file that named it would send other commands there.

@@ -5,7 +5,6 @@ use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::{MeshStage, Part};
 use crate::commands::output::notice;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
-use contact::contact_objective::mean_height_coordinates;
 use contact::plausibility::Warning;
 use contact::standstill::standstill;
 use nonsmooth::{
@@ -76,7 +75,7 @@ pub fn run_on_mesh(
         bundle_size: optimizer.bundle_size,
         accuracy,
         composite_model: stage.case.method == MethodName::Composite,
-        scaling: VariableScaling::Linear(mean_height_coordinates(&initial_controls, first_step)),
+        scaling: VariableScaling::Linear(objective.coordinates(&initial_controls, first_step)),
         ..BundleTrustConfig::default()
     };
     let name = stage.part.folder();

@@ -10,7 +10,9 @@ use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, Part, stages};
 use crate::commands::run_kind::RunKind;
 use crate::commands::solved_shape::{ContactObjective, check_ahead, optimized_objective, wanted};
+use crate::commands::mesh_words::mesh;
 use contact::error::SceneError;
+use contact::scene::SceneSize;
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Termination, Vector};
@@ -132,10 +134,9 @@ pub fn optimize(
     Ok(OptimizationRun { mesh_runs, meshes: stages.len(), folder })
 }
 
-/// "the mesh of 12x12x4 bricks"
+/// "the mesh of 12×12×4 bricks"
 fn on(stage: &MeshStage) -> String {
-    let [n1, n2, n3] = stage.case.scene.mesh;
-    format!("the mesh of {n1}x{n2}x{n3} bricks")
+    format!("the mesh of {}", mesh(&stage.case.scene))
 }
 
 /// Largest change of a control at a random start, in first steps: several times the length on which contact changes.
@@ -185,7 +186,7 @@ pub fn begin(
 /// Bytes of a number in the restart data.
 const NUMBER_BYTES: u64 = 24;
 
-/// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
+/// Bytes per torn node of the fields of one state (some 260 bytes per cell were written at 35³).
 const FIELD_BYTES: u64 = 300;
 
 /// Bytes per contact node of the figures, as files and in the page (some 2500 were written at 35³).
@@ -203,11 +204,10 @@ const SERIES: u64 = 40;
 /// writes two runs at once; the rows of a study prove their own room.
 fn room(stages: &[MeshStage], kind: RunKind, series: bool) -> u64 {
     let bytes = stages.iter().map(|stage| {
-        let scene = &stage.case.scene;
-        let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
-        let nodes = torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 };
-        let contact = ((scene.mesh[0] + 1) * (scene.mesh[1] + 1)) as u64;
-        let controls = scene.control_points.iter().product::<usize>() as u64;
+        let size = SceneSize::of(&stage.case.scene);
+        let nodes = (size.bodies * size.pieces * size.piece_nodes) as u64;
+        let contact = size.contact_nodes as u64;
+        let controls = stage.case.scene.control_count() as u64;
         let restart_data = 3 * NUMBER_BYTES * nodes;
         let jacobian = 2 * 8 * contact * controls;
         let kept = match stage.case.method {

@@ -52,15 +52,17 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
     if meshes.is_empty() {
         return vec![MeshStage { part: Part::Whole, case: case.clone() }];
     }
-    let longest = case.scene.mesh.iter().copied().max().unwrap_or(1);
     let stage = |&bricks: &usize| {
         let mut case = case.clone();
-        let scaled = |count: usize| ((count * bricks) as f64 / longest as f64).round().max(1.0) as usize;
-        case.scene.mesh = case.scene.mesh.map(scaled);
-        let fits = case.scene.mesh.iter().zip(&case.scene.subdomains).all(|(mesh, count)| mesh.is_multiple_of(*count));
-        if !fits {
-            case.scene.subdomains = case.scene.mesh.map(default_subdomains);
-        }
+        case.scene = case.scene.with_blocks(|blocks| {
+            let longest = blocks.bricks.iter().copied().max().unwrap_or(1);
+            let scaled = |count: usize| ((count * bricks) as f64 / longest as f64).round().max(1.0) as usize;
+            blocks.bricks = blocks.bricks.map(scaled);
+            let fits = blocks.bricks.iter().zip(&blocks.subdomains).all(|(mesh, count)| mesh.is_multiple_of(*count));
+            if !fits {
+                blocks.subdomains = blocks.bricks.map(default_subdomains);
+            }
+        });
         MeshStage { part: Part::Mesh(bricks), case }
     };
     meshes.iter().map(stage).collect()
@@ -85,8 +87,9 @@ mod tests {
         let mut case = Case::new(&file, Path::new("")).expect("an example");
         assert!(stages(&case).len() == 1 && stages(&case)[0].part == Part::Whole);
         case.optimizer.continuation = vec![6, 12, 25];
+        let blocks = |stage: &MeshStage| *stage.case.scene.blocks().expect("a block");
         let meshes: Vec<_> =
-            stages(&case).iter().map(|stage| (stage.case.scene.mesh, stage.case.scene.subdomains)).collect();
+            stages(&case).iter().map(|stage| (blocks(stage).bricks, blocks(stage).subdomains)).collect();
         assert_eq!(meshes, [([6, 6, 2], [2, 2, 1]), ([12, 12, 4], [2, 2, 1]), ([25, 25, 8], [5, 5, 2])]);
     }
 }

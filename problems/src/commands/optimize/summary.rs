@@ -2,6 +2,7 @@
 
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
+use crate::commands::mesh_words;
 use crate::commands::numbers::{exact, number, raised};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
@@ -34,7 +35,7 @@ fn course(record: &IterationRecord) -> serde_json::Value {
 /// One of several runs: a mesh of a coarse-to-fine optimization, or a start.
 fn stage(run: &MeshRun) -> serde_json::Value {
     json!({
-        "mesh": run.objective.solver().problem().scene.mesh,
+        "mesh": run.objective.solver().problem().scene.blocks().map(|blocks| blocks.bricks),
         "objective_start": run.report.start_value,
         "objective": run.report.value,
         "evaluations": run.report.counts.evaluations,
@@ -173,9 +174,9 @@ impl Ended<'_> {
         let several = || self.runs.iter().filter(|run| run.part != Part::Whole);
         let fact = |run: &MeshRun| {
             let (report, name) = (&run.report, run.part.folder().unwrap_or_default().replace('_', " "));
-            let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
+            let scene = &run.objective.solver().problem().scene;
             let values = vec![
-                format!("{n1}×{n2}×{n3}").into(),
+                mesh_words::mesh(scene).into(),
                 report.start_value.into(),
                 report.value.into(),
                 report.counts.evaluations.into(),
@@ -261,9 +262,9 @@ impl Ended<'_> {
 fn scene_fact(run: &MeshRun) -> Fact {
     let scene = &run.objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
-    let bricks = |counts: [usize; 3]| counts.map(|count| count.to_string()).join("×");
-    let (mesh, parts, friction) = (bricks(scene.mesh), bricks(scene.subdomains), exact(scene.friction));
-    Fact::new("", "scene", format!("{bodies} of {mesh} bricks, {parts} subdomains each, friction {friction}"), "")
+    let (mesh, parts) = (mesh_words::mesh(scene), mesh_words::pieces(scene));
+    let friction = exact(scene.contact.friction);
+    Fact::new("", "scene", format!("{bodies} of {mesh}, {parts}, friction {friction}"), "")
 }
 
 /// The facts of the certificate; its cuts go to a file.

@@ -1,7 +1,7 @@
 //! The files of each command. None of them is computed unless a folder is asked for.
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::controls;
+use crate::commands::controls::{self, Layout};
 use crate::commands::facts::Facts;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, json};
@@ -24,9 +24,9 @@ pub fn write_optimization(
     let shapes = ended.shapes;
     let MeshRun { objective, report, .. } = ended.last;
     let mut out = ReportFolder::new(folder, loaded, objective);
-    let counts = objective.solver().problem().scene.control_points;
-    let heights = controls::written(report.solution.as_slice(), counts)?;
-    out.write("controls.json", &heights, "the control heights found, a row per control point along x₁")?;
+    let layout = Layout::of(&objective.solver().problem().scene.shape);
+    let written = controls::written(report.solution.as_slice(), layout)?;
+    out.write("controls.json", &written, "the controls found")?;
     let what = "all cuts and multipliers behind the certificate, for recheck";
     out.write("certificate.json", &json(&report.certificate)?, what)?;
     out.write("history.csv", &tables::history(objective, report), "one line per evaluation")?;

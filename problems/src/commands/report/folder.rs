@@ -90,7 +90,7 @@ impl<'a> ReportFolder<'a> {
         }
         for shape in &shapes {
             let what = "pressure, traction, remaining gap and status of every contact node";
-            let table = tables::contact_nodes(self.objective, &shape.solved.state);
+            let table = tables::contact_nodes(self.objective, shape.solved.controls.as_slice(), &shape.solved.state);
             self.write(&format!("pressure_{}.csv", shape.name), &table, what)?;
         }
         if self.wanted().vtk {

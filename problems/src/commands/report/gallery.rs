@@ -1,13 +1,13 @@
 //! The figures of contact and of a run; solved shapes as figures and files show them.
 
 use crate::commands::failure::Failure;
-use crate::commands::report::bodies::plan;
+use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use figures::{
     ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, Step,
-    grid_faces, number,
+    number,
 };
 use nonsmooth::Report;
 use scene_file::OutputSection;
@@ -27,7 +27,7 @@ pub struct ShownShape<'a> {
 
 impl<'a> ShownShape<'a> {
     /// A solved shape with the beginning of its files' names and what it is called, and with as many fields as the
-    /// outputs show. Files for ParaView hold the sensitivity of the objective to the height of every contact node as
+    /// outputs show. Files for ParaView hold the sensitivity of the objective to the position of every contact node as
     /// well, which takes an adjoint.
     pub fn new(
         objective: &ContactObjective,
@@ -48,9 +48,13 @@ pub fn pressure(
     scales: ColourScales,
 ) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let [n1, n2, _] = problem.grid.nodes();
-    let panel =
-        |(caption, values)| MapPanel { caption, points: plan(&problem.grid), faces: grid_faces([n1, n2]), values };
+    let surface = ContactSurface::new(problem);
+    let panel = |(caption, values): (String, Vec<f64>)| MapPanel {
+        caption,
+        points: surface.plan(),
+        faces: surface.faces(),
+        values: surface.spread(&values, 0.0),
+    };
     let found = shapes.iter().map(|shape| (shape.caption.clone(), objective.pressures(&shape.solved.state)));
     let wanted = objective.wanted().map(|wanted| (WANTED.to_owned(), wanted.to_vec()));
     let (name, words) = match scales {
@@ -62,7 +66,7 @@ pub fn pressure(
         title: format!("{}: contact pressure{words}", problem.scene.name),
         quantity: "pressure".into(),
         unit: "MPa".into(),
-        axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        axes: surface.axis_names(),
         scales,
         contours: false,
         panels: found.chain(wanted).map(panel).collect(),
@@ -73,39 +77,35 @@ pub fn pressure(
 /// What the wanted pressure is called beside those of shapes.
 const WANTED: &str = "wanted";
 
-/// Pressures of all shapes along x₁ and x₂ through the peak of each of them.
+/// Pressures of all shapes along both axes of the plan through the peak of each of them.
 pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let grid = &problem.grid;
-    let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| objective.pressures(&shape.solved.state)).collect();
-    let peak = |values: &Vec<f64>| {
-        let larger = |best: usize, node: usize| if values[node] > values[best] { node } else { best };
-        problem.boundary.points[(0..values.len()).fold(0, larger)].position
-    };
-    let peaks: Vec<[usize; 2]> = pressures.iter().map(peak).collect();
+    let surface = ContactSurface::new(problem);
+    let spread = |values: &[f64]| surface.spread(values, 0.0);
+    let pressures: Vec<Vec<f64>> =
+        shapes.iter().map(|shape| spread(&objective.pressures(&shape.solved.state))).collect();
+    let wanted = objective.wanted().map(spread);
+    let peaks: Vec<usize> = pressures.iter().map(|values| surface.peak(values)).collect();
+    let [first, second] = surface.axis_symbols();
     let mut panels: Vec<LinePanel> = Vec::new();
-    for (index, peak) in peaks.iter().enumerate() {
-        for (axis, [along, other]) in [["x₁", "x₂"], ["x₂", "x₁"]].into_iter().enumerate() {
-            let same = |place: &[usize; 2]| place[1 - axis] == peak[1 - axis];
+    for (index, &peak) in peaks.iter().enumerate() {
+        for (axis, [along, other]) in [[first, second], [second, first]].into_iter().enumerate() {
+            let level = surface.level(axis, peak);
+            let same = |node: &usize| surface.level(axis, *node) == level;
             // One line may run through several peaks.
             if peaks[..index].iter().any(same) {
                 continue;
             }
-            let labels = shapes.iter().zip(&peaks).filter(|(_, place)| same(place)).map(|(shape, _)| shape.label);
+            let labels = shapes.iter().zip(&peaks).filter(|(_, node)| same(node)).map(|(shape, _)| shape.label);
             let labels = labels.collect::<Vec<_>>().join(", ");
-            let across = number(grid.position(peak[0], peak[1])[1 - axis]);
-            let node = |index: usize| if axis == 0 { [index, peak[1]] } else { [peak[0], index] };
             let curve = |(name, values): (&str, &[f64])| Curve {
                 name: name.to_owned(),
-                points: (0..=grid.cells[axis])
-                    .map(node)
-                    .map(|[i, j]| (grid.position(i, j)[axis], values[grid.column(i, j)]))
-                    .collect(),
+                points: surface.cut(axis, peak, values),
             };
             let found = shapes.iter().zip(&pressures).map(|(shape, values)| (shape.label, values.as_slice()));
-            let wanted = objective.wanted().map(|wanted| (WANTED, wanted));
+            let wanted = wanted.as_deref().map(|wanted| (WANTED, wanted));
             panels.push(LinePanel {
-                caption: format!("{other} = {across} mm, through the peak ({labels})"),
+                caption: format!("{other} = {} mm, through the peak ({labels})", number(level)),
                 across: format!("{along} (mm)"),
                 curves: found.chain(wanted).map(curve).collect(),
             });
@@ -125,7 +125,7 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
 /// The status of every contact node; with friction, the traction as arrows.
 pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let [n1, n2, _] = problem.grid.nodes();
+    let surface = ContactSurface::new(problem);
     let friction = problem.boundary.has_friction();
     // Without friction, nothing says whether a closed node slides.
     let names: &[&str] = if friction { &["open", "stick", "slip"] } else { &["open", "closed"] };
@@ -135,21 +135,24 @@ pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result
         ContactStatus::Stick | ContactStatus::Slip => 1,
     };
     let panel = |shape: &ShownShape<'_>| {
-        let forces = &shape.solved.state.forces;
-        let tractions = forces.tangential.iter().zip(&problem.boundary.points);
+        let (forces, rows) = (&shape.solved.state.forces, &shape.solved.state.rows);
+        let pairs = forces.tangential.iter().zip(&rows.nodes);
+        let tractions: Vec<[f64; 2]> =
+            pairs.map(|(force, node)| surface.in_plan(force.map(|force| force / node.area))).collect();
+        let classes: Vec<usize> = forces.status.iter().map(class).collect();
         ClassPanel {
             caption: shape.caption.clone(),
-            points: plan(&problem.grid),
-            faces: grid_faces([n1, n2]),
-            classes: forces.status.iter().map(class).collect(),
-            arrows: tractions.map(|(force, point)| force.map(|force| force / point.area)).collect(),
+            points: surface.plan(),
+            faces: surface.faces(),
+            classes: surface.spread(&classes, 0),
+            arrows: if friction { surface.spread(&tractions, [0.0; 2]) } else { Vec::new() },
         }
     };
     let words = if friction { " and friction traction" } else { "" };
     Classes {
         name: "status".into(),
         title: format!("{}: contact status{words}", problem.scene.name),
-        axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        axes: surface.axis_names(),
         classes: names.iter().map(|name| (*name).to_owned()).collect(),
         arrows: friction.then(|| ("traction".into(), "MPa".into())),
         panels: shapes.iter().map(panel).collect(),

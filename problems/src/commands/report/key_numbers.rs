@@ -23,34 +23,34 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
             shape.solved.state.forces.total_normal_force() / area(fields)
         }),
         row("contact_area", "contact area (nodes that are closed)", "mm²", &|shape, _| {
-            objective.solver().problem().boundary.closed_area(&shape.solved.state.forces.status)
+            shape.solved.state.rows.closed_area(&shape.solved.state.forces.status)
         }),
-        row("peak_von_mises_at_centres", "peak von Mises stress at the centre of a brick", "MPa", &|_, fields| {
+        row("peak_von_mises_at_centres", "peak von Mises stress at the centre of a cell", "MPa", &|_, fields| {
             largest(fields.bodies.iter().flat_map(|body| &body.von_mises))
         })
-        .meaning("stresses at the centres of bricks converge with the square of the mesh size"),
+        .meaning("stresses at the centres of cells converge with the square of the mesh size"),
         row("peak_von_mises_at_nodes", "peak of the mean von Mises stress around a node", "MPa", &|_, fields| {
             largest(fields.bodies.iter().flat_map(|body| &body.nodal_von_mises))
         })
         .meaning(
-            "the mean over the bricks that share the node, as in the picture; it is never above the peak at a centre, and equals it where \
-             the brick of the peak has a node of its own, at a corner of a body",
+            "the mean over the cells that share the node, as in the picture; it is never above the peak at a centre, and equals it where \
+             the cell of the peak has a node of its own, at a corner of a body",
         ),
         row("largest_displacement", "largest displacement", "mm", &|_, fields| deformation(fields).displacement),
-        row("largest_strain", "largest principal strain (modulus, at brick centres)", "%", &|_, fields| {
+        row("largest_strain", "largest principal strain (modulus, at cell centres)", "%", &|_, fields| {
             100.0 * deformation(fields).strain
         }),
     ]);
     let bodies = seen.iter().map(|(_, fields)| fields.bodies.len()).min().unwrap_or(0);
     let names = [("volume_lower", "volume of the lower body"), ("volume_upper", "volume of the upper body")];
     for (body, (key, quantity)) in names.into_iter().enumerate().take(bodies) {
-        facts.push(row(key, quantity, "mm³", &|_, fields| fields.bodies[body].block.volume()));
+        facts.push(row(key, quantity, "mm³", &|_, fields| fields.bodies[body].mesh.volume(&fields.bodies[body].positions)));
     }
     if objective.solver().problem().boundary.has_friction() {
         facts.push(row("friction_work", "friction work Σ|λ_T·slip|", "N·mm", &|shape, _| {
             let forces = &shape.solved.state.forces;
             let pairs = forces.tangential.iter().zip(&forces.slip);
-            pairs.map(|(force, slip)| (force[0] * slip[0] + force[1] * slip[1]).abs()).sum()
+            pairs.map(|(force, slip)| force.iter().zip(slip).map(|(f, s)| f * s).sum::<f64>().abs()).sum()
         }));
     }
     let columns = seen.iter().map(|(shape, _)| shape.label.to_owned()).collect();
@@ -63,6 +63,6 @@ fn largest<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
 }
 
 fn deformation(fields: &Fields) -> Deformation {
-    let bodies = fields.bodies.iter().map(|body| Deformation::of(&body.block, &body.displacement));
+    let bodies = fields.bodies.iter().map(|body| Deformation::of(&body.mesh, &body.positions, &body.displacement));
     bodies.fold(Deformation::NONE, Deformation::and)
 }

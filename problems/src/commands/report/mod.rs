@@ -2,6 +2,7 @@
 
 mod bodies;
 mod captions;
+mod contact_surface;
 pub mod files;
 mod folder;
 mod gallery;
@@ -9,9 +10,11 @@ mod key_numbers;
 mod pages;
 mod sections;
 mod setup;
+mod skin;
 mod stamp;
 pub mod study;
 mod tables;
 
+pub use bodies::Relief;
 pub use folder::VTK;
 pub use sections::{export_command, found_label};

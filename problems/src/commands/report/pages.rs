@@ -2,6 +2,7 @@
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::{Facts, Group};
+use crate::commands::mesh_words::mesh;
 use crate::commands::numbers::{number, rounded};
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
@@ -10,6 +11,7 @@ use crate::commands::shape_facts::is_proved;
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::StageSeconds;
+use contact::shape::{HeightShape, ShapeScene};
 use figures::page::{Block, Page, Section};
 use std::path::Path;
 
@@ -61,17 +63,29 @@ pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> P
 
 fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Section>) -> Page {
     let scene = &objective.solver().problem().scene;
-    let [n1, n2, n3] = scene.mesh;
-    let bodies = if scene.upper.is_some() { 2 } else { 1 };
-    let title = format!("{}: {what} ({bodies} × {n1}×{n2}×{n3} bricks, friction {})", scene.name, scene.friction);
+    let (bodies, mesh, friction) = (scene.body_count(), mesh(scene), scene.contact.friction);
+    let title = format!("{}: {what} ({bodies} × {mesh}, friction {friction})", scene.name);
     Page { title, lead, sections, ..Page::default() }
 }
 
-/// Control heights with their places: a row per control point along x₁.
-fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
+/// The controls with their places.
+fn controls(objective: &ContactObjective, controls: &[f64]) -> Section {
     let scene = &objective.solver().problem().scene;
-    let Ok(surface) = scene.spline_surface() else { return Section::default() };
-    let [across, along] = surface.control_places(scene.size);
+    match (&scene.shape, scene.blocks()) {
+        (ShapeScene::Heights(shape), Some(blocks)) => heights(shape, blocks.size, controls),
+        (ShapeScene::Lattice(lattice), _) => {
+            let rows = lattice.control_names().into_iter().zip(controls).map(|(name, value)| vec![name, number(*value)]);
+            let table = Block::table(["control", "displacement, mm"], rows.collect::<Vec<_>>());
+            Section::new("Displacements of the control points", vec![table])
+        }
+        _ => Section::default(),
+    }
+}
+
+/// Control heights with their places: a row per control point along x₁.
+fn heights(shape: &HeightShape, size: [f64; 2], heights: &[f64]) -> Section {
+    let Ok(surface) = shape.surface() else { return Section::default() };
+    let [across, along] = surface.control_places(size);
     let head = std::iter::once("x₁, mm \\ x₂, mm".to_owned()).chain(along.iter().map(|x2| number(*x2)));
     let rows = heights
         .chunks(along.len())

@@ -3,7 +3,6 @@
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, STUDY};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::report::bodies::above_mean;
 use crate::commands::report::sections;
 use crate::commands::report::stamp::stamp;
 use crate::commands::run_kind::RUN;
@@ -12,7 +11,7 @@ use crate::commands::study::table::{StudyJson, row_folder, values};
 use crate::commands::study::varied::parts;
 use figures::page::{Block, File, Page, Section};
 use figures::{
-    ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces, grid_faces,
+    ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces,
 };
 
 /// Folder of the figures.
@@ -25,7 +24,7 @@ const PER_FIGURE: usize = 3;
 const CURVES: &str = "Every mark is a row that has a result. The axis begins at zero.";
 const PRESSURES: &str = "Contact pressure of each row over the plan of the contact surface; a ring marks the peak. The panels of one picture \
     have one scale.";
-const SURFACES: &str = "The contact surface of each row without load, its heights counted from their mean. The panels of one picture have one \
+const SURFACES: &str = "The contact surface of each row without load: heights counted from their mean, or displacements by a lattice. The panels of one picture have one \
     scale.";
 
 /// Writes table, figures and page of a study.
@@ -190,29 +189,23 @@ fn caption(row: &Row) -> String {
     options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
 }
 
-/// Positions of n₁ × n₂ contact nodes at equal distances, mm.
-fn plan([n1, n2]: [usize; 2], size: [f64; 2]) -> Vec<[f64; 2]> {
-    let place =
-        |node: usize| [size[0] * (node / n2) as f64 / (n1 - 1) as f64, size[1] * (node % n2) as f64 / (n2 - 1) as f64];
-    (0..n1 * n2).map(place).collect()
-}
-
 fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
-        let Picture { counts, size, pressures, .. } = &solved.picture;
+        let Picture { plan, faces, pressures, .. } = &solved.picture;
         MapPanel {
             caption: caption(row),
-            points: plan(*counts, *size),
-            faces: grid_faces(*counts),
+            points: plan.clone(),
+            faces: faces.clone(),
             values: pressures.clone(),
         }
     };
+    let axes = rows.first().map_or_else(Default::default, |shown| shown.solved.picture.axes.clone());
     Map {
         name,
         title,
         quantity: "pressure".into(),
         unit: "MPa".into(),
-        axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        axes,
         scales: ColourScales::Common,
         contours: false,
         panels: rows.iter().map(panel).collect(),
@@ -222,15 +215,15 @@ fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, 
 
 fn surfaces(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
-        let Picture { counts, size, heights, .. } = &solved.picture;
-        let (caption, heights) = above_mean(&caption(row), heights);
-        let points = plan(*counts, *size).into_iter().zip(heights).map(|([x1, x2], height)| [x1, x2, height]);
-        SurfacePanel { caption, points: points.collect(), faces: grid_faces(*counts) }
+        let Picture { plan, faces, mean, relief, .. } = &solved.picture;
+        let points = plan.iter().zip(relief).map(|([x1, x2], height)| [*x1, *x2, *height]);
+        SurfacePanel { caption: caption(row) + mean, points: points.collect(), faces: faces.clone() }
     };
+    let quantity = rows.first().map_or_else(String::new, |shown| shown.solved.picture.quantity.clone());
     Surfaces {
         name,
         title: format!("{title} of the lower body, without load"),
-        quantity: "height less mean".into(),
+        quantity,
         unit: "mm".into(),
         panels: rows.iter().map(panel).collect(),
     }

@@ -6,16 +6,18 @@ use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
 /// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to accuracy), status.
-pub fn contact_nodes(objective: &ContactObjective, state: &ContactState) -> String {
+pub fn contact_nodes(objective: &ContactObjective, controls: &[f64], state: &ContactState) -> String {
     let problem = objective.solver().problem();
-    let mut table = String::from("x1_mm,x2_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,remaining_gap_mm,status\n");
-    let pressures = objective.pressures(state);
+    let head = "x1_mm,x2_mm,x3_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,traction_3_MPa,remaining_gap_mm,status\n";
+    let mut table = String::from(head);
+    let (pressures, positions) = (objective.pressures(state), problem.map.positions(controls));
     for (index, (point, pressure)) in problem.boundary.points.iter().zip(pressures).enumerate() {
-        let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
-        let [t1, t2] = state.forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
+        let [x1, x2, x3] = positions[point.node as usize];
+        let area = state.rows.nodes[index].area;
+        let [t1, t2, t3] = state.forces.tangential.get(index).map_or([0.0; 3], |force| force.map(|f| f / area));
         // The jump less the gap is negative where bodies are apart.
         let gap = -state.forces.opening[index];
-        let cells = [x1, x2, pressure, t1, t2, gap].map(exact).join(",");
+        let cells = [x1, x2, x3, pressure, t1, t2, t3, gap].map(exact).join(",");
         table += &format!("{cells},{:?}\n", state.forces.status[index]);
     }
     table

@@ -1,12 +1,13 @@
 //! One row of a study.
 
 use crate::commands::arguments::HeightError;
-use crate::commands::controls;
+use crate::commands::controls::{self, Layout};
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
+use crate::commands::report::Relief;
 use crate::commands::shape_facts::is_better;
 use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
@@ -86,17 +87,23 @@ pub struct Optimized {
     pub had_to_move: bool,
 }
 
-/// Contact nodes of a row for pictures.
+/// The contact surface of a row for pictures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
-    /// Contact nodes along x₁ and x₂.
-    pub counts: [usize; 2],
-    /// Sides of the contact surface, mm.
-    pub size: [f64; 2],
+    /// Names of the axes of the plan.
+    pub axes: [String; 2],
+    /// Nodes of the surface in the plan, mm.
+    pub plan: Vec<[f64; 2]>,
+    /// Its facets by the places of their nodes.
+    pub faces: Vec<Vec<usize>>,
     /// Contact pressure per node, MPa.
     pub pressures: Vec<f64>,
-    /// Height of the surface per node, mm.
-    pub heights: Vec<f64>,
+    /// What the relief is.
+    pub quantity: String,
+    /// Words that tell the mean of heights, or none.
+    pub mean: String,
+    /// Relief of the surface per node, mm.
+    pub relief: Vec<f64>,
 }
 
 impl Solved {
@@ -182,8 +189,8 @@ fn stated(
     file.output.folder = out.map(|path| path.display().to_string());
     let part = loaded.changed(|scene| *scene = file).map_err(|error| options.scene.blame(error))?;
     if has_start {
-        let given = loaded.case.scene.control_points;
-        controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
+        let [given, own] = [&loaded.case, &part.case].map(|case| Layout::of(&case.scene.shape));
+        controls::check_layout(given, own, "the study, at which its rows begin")?;
     }
     Ok((part, options))
 }
@@ -241,14 +248,15 @@ fn optimum(
 /// What a row keeps of a solved shape.
 fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'_>) -> Result<Solved, Failure> {
     let (problem, forces) = (objective.solver().problem(), &shape.state.forces);
-    let [n1, n2, _] = problem.grid.nodes();
-    let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
+    let relief = Relief::new(problem);
+    let surface = relief.surface();
+    let (mean, values) = relief.of("", &problem.map.positions(shape.controls.as_slice()));
     Ok(Solved {
         objective: shape.value,
         objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
         limit_violation: shape.above_limit(),
-        contact_area: problem.boundary.closed_area(&forces.status),
+        contact_area: shape.state.rows.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),
         controls: shape.controls.as_slice().to_vec(),
@@ -258,10 +266,13 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
             .map(|warning| warning.code.to_owned())
             .collect(),
         picture: Picture {
-            counts: [n1, n2],
-            size: problem.grid.size,
-            pressures: objective.pressures(&shape.state),
-            heights: block.upper,
+            axes: surface.axis_names(),
+            plan: surface.plan(),
+            faces: surface.faces(),
+            pressures: surface.spread(&objective.pressures(&shape.state), 0.0),
+            quantity: relief.quantity().into(),
+            mean,
+            relief: values,
         },
     })
 }

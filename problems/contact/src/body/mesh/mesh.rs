@@ -1,6 +1,7 @@
 //! A mesh: nodes, cells, named faces and node sets.
 
 use crate::body::elasticity::CellNodes;
+use crate::body::elasticity::facet::{AreaKind, tributary_areas};
 use crate::body::mesh::CellKind;
 use crate::error::SceneError;
 use crate::scalar::Scalar;
@@ -220,6 +221,12 @@ impl Mesh {
     /// Nodes of a face of a cell, and how many of them are its corners.
     pub fn face_with_corners(&self, face: CellFace) -> (Vec<u32>, usize) {
         (self.face_nodes(face).collect(), self.kinds[face.cell as usize].corner_count())
+    }
+
+    /// Area of a face of a cell, mm².
+    pub fn face_area(&self, face: CellFace, positions: &[[f64; 3]]) -> f64 {
+        let nodes: Vec<[f64; 3]> = self.face_nodes(face).map(|node| positions[node as usize]).collect();
+        tributary_areas(&nodes, AreaKind::Surface).into_iter().sum()
     }
 
     /// Positions of the nodes of a cell, as numbers of any kind.

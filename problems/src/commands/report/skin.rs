@@ -1,0 +1,31 @@
+//! The skin of a body as pictures show it.
+
+use contact::body::mesh::Mesh;
+
+/// The nodes of the skin, and its faces by their places: corners counterclockwise seen from outside.
+pub struct Skin {
+    pub nodes: Vec<u32>,
+    pub faces: Vec<Vec<usize>>,
+}
+
+impl Skin {
+    pub fn new(mesh: &Mesh) -> Self {
+        let corners = |face| {
+            let (nodes, count) = mesh.face_with_corners(face);
+            nodes.into_iter().take(count).collect::<Vec<u32>>()
+        };
+        let faces: Vec<Vec<u32>> = mesh.skin().into_iter().map(corners).collect();
+        let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let place = |node: &u32| nodes.partition_point(|other| other < node);
+        let faces = faces.iter().map(|face| face.iter().map(place).collect()).collect();
+        Self { nodes, faces }
+    }
+}
+
+/// Least and largest coordinates of some points along an axis.
+pub fn extent(points: impl IntoIterator<Item = [f64; 3]>, axis: usize) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    points.into_iter().fold(start, |[least, most], x| [least.min(x[axis]), most.max(x[axis])])
+}
