@@ -4,15 +4,18 @@ use crate::body::elasticity::Material;
 use crate::body::loads::Loaded;
 use crate::body::mesh::{CellFace, Mesh};
 use crate::body::support::{Directions, held_directions};
-use crate::body::{Patterns, Piece};
+use crate::body::{Patterns, Piece, Place};
 use crate::error::SceneError;
 use crate::names::find;
 use crate::scene::BodyScene;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The two ends of an edge whose middle node is tied to them.
+/// The two ends of an edge whose middle node is tied to them: u = û + (mean of the ends), with û held at zero.
 pub type Ends = [u32; 2];
+
+/// The axes.
+const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A body without a shape.
 #[derive(Debug)]
@@ -60,7 +63,7 @@ impl Body {
             mesh,
         };
         let piece_of = body.mesh.pieces().map_or_else(|| body.mesh.partitioned(piece_count), <[u32]>::to_vec);
-        let mut known = Patterns::new();
+        let mut known = Patterns::default();
         let cells = body.mesh.cells_by_piece(&piece_of);
         body.pieces = cells.into_iter().map(|cells| Piece::new(&body, cells, &mut known)).collect();
         Ok(body)
@@ -68,7 +71,7 @@ impl Body {
 
     /// The whole body as one piece.
     pub fn whole(&self) -> Piece {
-        Piece::new(self, (0..self.mesh.cell_count() as u32).collect(), &mut Patterns::new())
+        Piece::new(self, (0..self.mesh.cell_count() as u32).collect(), &mut Patterns::default())
     }
 
     /// The material of a cell.
@@ -81,14 +84,41 @@ impl Body {
         &self.materials
     }
 
-    /// The orthonormal directions in which supports hold a node.
+    /// The orthonormal directions in which supports hold a node; all for a tied node, which has displacements against its
+    /// ends alone.
     pub fn held(&self, node: u32) -> &[[f64; 3]] {
+        if self.ends_of(node).is_some() {
+            return &AXES;
+        }
         self.held.get(&node).map_or(&[], Directions::held)
     }
 
     /// Orthonormal directions in which a node is free.
     pub fn free(&self, node: u32) -> Vec<[f64; 3]> {
-        self.held.get(&node).map_or_else(|| Directions::default().free(), Directions::free)
+        match self.held.get(&node) {
+            _ if self.ends_of(node).is_some() => Vec::new(),
+            Some(held) => held.free(),
+            None => AXES.to_vec(),
+        }
+    }
+
+    /// From the middle between their ends to the tied nodes, mm: zero on straight edges.
+    pub(crate) fn arms<'a>(&'a self, positions: &'a [[f64; 3]]) -> impl Iterator<Item = [f64; 3]> + 'a {
+        let mut tied: Vec<u32> = self.ends.keys().copied().collect();
+        tied.sort_unstable();
+        tied.into_iter().filter_map(|node| match self.place(node, positions) {
+            Place::Arm(arm) => Some(arm),
+            Place::Point(_) => None,
+        })
+    }
+
+    /// What of a node moves in rigid motions: the node, or the arm of a tied one.
+    pub(crate) fn place(&self, node: u32, positions: &[[f64; 3]]) -> Place {
+        let x = positions[node as usize];
+        match self.ends_of(node).map(|ends| ends.map(|end| positions[end as usize])) {
+            None => Place::Point(x),
+            Some([a, b]) => Place::Arm(std::array::from_fn(|axis| x[axis] - 0.5 * (a[axis] + b[axis]))),
+        }
     }
 
     /// Nodes that supports hold, ascending; tied ones move with their ends and are left out.

@@ -15,9 +15,11 @@ mod nodal_axes;
 mod piece;
 pub(crate) mod shape_force;
 pub(crate) mod shape_sensitivity;
+mod rigid_motions;
 mod support;
 
 pub use body::{Body, Ends};
 pub(crate) use nodal_axes::NodalAxes;
+pub use rigid_motions::{MOTIONS, Place};
 pub(crate) use support::{beyond, nodal_normals};
 pub use piece::{Patterns, Piece, PiecePattern};

@@ -6,7 +6,7 @@
 use crate::body::elasticity::Material;
 use crate::body::elasticity::stiffness::lower_start;
 use crate::body::mesh::{Mesh, narrow};
-use crate::body::Body;
+use crate::body::{Body, Place};
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
@@ -19,7 +19,8 @@ use std::sync::Arc;
 pub struct Piece {
     /// Its cells in the mesh, ascending.
     pub cells: Vec<u32>,
-    /// Its nodes with displacements of their own, ascending: dofs 3·index + component.
+    /// Its nodes, ascending: dofs 3·index + component. Those of a tied node are its displacements against the mean of its
+    /// ends, which are held at zero.
     pub nodes: Vec<u32>,
     /// What it shares with pieces that are numbered alike.
     pub pattern: Arc<PiecePattern>,
@@ -43,22 +44,15 @@ pub struct PiecePattern {
 /// A cell of a piece.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct LocalCell {
-    /// Its nodes in the piece; of a node tied between two others, those.
-    nodes: Vec<LocalNode>,
+    /// Its nodes in the piece.
+    nodes: Vec<u32>,
+    /// Tied nodes with their ends, by their places among its nodes.
+    ties: Vec<[u8; 3]>,
 }
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum LocalNode {
-    Own(u32),
-    /// The middle of two nodes of the same cell, by their places among its nodes.
-    Between([u8; 2]),
-}
-
-/// Entries of cell matrices at nodes that are tied have no place.
-const NOWHERE: u32 = u32::MAX;
 
 /// Patterns by the numbering of their cells.
-pub type Patterns = HashMap<(Vec<Vec<u64>>, [usize; 3]), Arc<PiecePattern>>;
+#[derive(Debug, Default)]
+pub struct Patterns(HashMap<(Vec<LocalCell>, [usize; 3]), Arc<PiecePattern>>);
 
 impl Piece {
     /// The piece of some cells of a body, ascending; patterns are shared by way of `known`.
@@ -67,17 +61,14 @@ impl Piece {
         let mut nodes: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell(cell as usize).nodes).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        nodes.retain(|node| body.ends_of(*node).is_none());
         let local: Vec<LocalCell> = cells.iter().map(|&cell| local_cell(body, &nodes, cell as usize)).collect();
         let points: Vec<[f64; 3]> = nodes.iter().map(|&node| mesh.nodes()[node as usize]).collect();
-        let fixing = fixing_nodes(&points);
-        let code = |node: &LocalNode| match *node {
-            LocalNode::Own(node) => u64::from(node),
-            LocalNode::Between([a, b]) => 1 << 40 | u64::from(a) << 8 | u64::from(b),
-        };
-        let key = (local.iter().map(|cell| cell.nodes.iter().map(code).collect()).collect(), fixing);
+        let untied: Vec<usize> = (0..nodes.len()).filter(|&place| body.ends_of(nodes[place]).is_none()).collect();
+        let fixing = fixing_nodes(&untied.iter().map(|&place| points[place]).collect::<Vec<_>>());
+        let fixing = fixing.map(|index| untied[index]);
+        let key = (local.clone(), fixing);
         let build = || Arc::new(PiecePattern::new(local, points, fixing));
-        let pattern = Arc::clone(known.entry(key).or_insert_with(build));
+        let pattern = Arc::clone(known.0.entry(key).or_insert_with(build));
         Self { cells, nodes, pattern }
     }
 
@@ -96,6 +87,15 @@ impl Piece {
         self.nodes.iter().map(|&node| positions[node as usize])
     }
 
+    /// What of its nodes moves in rigid motions.
+    pub(crate) fn places<'a>(
+        &'a self,
+        body: &'a Body,
+        positions: &'a [[f64; 3]],
+    ) -> impl Iterator<Item = Place> + 'a {
+        self.nodes.iter().map(|&node| body.place(node, positions))
+    }
+
     /// Values of the stiffness matrix over [`PiecePattern::lower`], for the materials of a body or others in their place.
     pub fn assemble(&self, body: &Body, positions: &[[f64; 3]], material: impl Fn(&Material) -> Material) -> Vec<f64> {
         let mut values = vec![0.0; self.pattern.lower.entry_count()];
@@ -105,9 +105,7 @@ impl Piece {
             let mut matrix = body.mesh.cell_nodes(cell, positions).stiffness(&material(body.material(cell)));
             local.fold(&mut matrix);
             for (entry, &place) in matrix.iter().zip(scatter.by_ref().take(matrix.len())) {
-                if place != NOWHERE {
-                    values[place as usize] += entry;
-                }
+                values[place as usize] += entry;
             }
         }
         values
@@ -118,32 +116,29 @@ impl Piece {
         self.pattern.cells[index].gather(values, cell_values);
     }
 
-    /// Adds forces on all nodes of a cell to those of the piece; a tied node hands over half to each of its ends.
+    /// Adds forces on all nodes of a cell to those of the piece: the work of a force on a tied node is that on its own
+    /// dofs, and half of it on each of its ends.
     pub fn add_cell_forces(&self, index: usize, forces: &[f64], sum: &mut [f64]) {
         let cell = &self.pattern.cells[index];
-        for (node, force) in cell.nodes.iter().zip(forces.as_chunks::<3>().0) {
-            let mut add = |place: u32, share: f64| {
-                (0..3).for_each(|axis| sum[3 * place as usize + axis] += share * force[axis]);
-            };
-            match *node {
-                LocalNode::Own(place) => add(place, 1.0),
-                LocalNode::Between(ends) => {
-                    cell.own(ends).into_iter().for_each(|place| add(place, 0.5));
-                }
-            }
+        let forces = forces.as_chunks::<3>().0;
+        let mut add = |node: u8, force: &[f64; 3], share: f64| {
+            let place = 3 * cell.nodes[usize::from(node)] as usize;
+            (0..3).for_each(|axis| sum[place + axis] += share * force[axis]);
+        };
+        forces.iter().enumerate().for_each(|(node, force)| add(node as u8, force, 1.0));
+        for &[tied, a, b] in &cell.ties {
+            [a, b].into_iter().for_each(|end| add(end, &forces[usize::from(tied)], 0.5));
         }
     }
 
-    /// Adds a force on a node of the mesh to the forces on the piece; half of it on each end of a tied node.
+    /// Adds a force on a node of the mesh to the forces on the piece, as [`add_cell_forces`](Self::add_cell_forces).
     pub fn add_force(&self, body: &Body, node: u32, force: [f64; 3], sum: &mut [f64]) {
         let mut add = |node: u32, share: f64| {
             let place = self.local(node).expect("invariant: cells of the piece have this node");
             (0..3).for_each(|axis| sum[3 * place + axis] += share * force[axis]);
         };
-        match body.ends_of(node) {
-            None => add(node, 1.0),
-            Some(ends) => ends.into_iter().for_each(|end| add(end, 0.5)),
-        }
+        add(node, 1.0);
+        body.ends_of(node).into_iter().flatten().for_each(|end| add(end, 0.5));
     }
 
     /// The value of a field over the piece at a node of the mesh.
@@ -152,89 +147,62 @@ impl Piece {
             let place = self.local(node).expect("invariant: cells of the piece have this node");
             [values[3 * place], values[3 * place + 1], values[3 * place + 2]]
         };
-        match body.ends_of(node) {
-            None => at(node),
-            Some([a, b]) => {
-                let (a, b) = (at(a), at(b));
-                std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]))
-            }
+        let own = at(node);
+        match body.ends_of(node).map(|ends| ends.map(at)) {
+            None => own,
+            Some([a, b]) => std::array::from_fn(|axis| own[axis] + 0.5 * (a[axis] + b[axis])),
         }
     }
 }
 
 impl LocalCell {
-    /// The places in the piece of two own nodes of the cell.
-    fn own(&self, ends: Ends8) -> [u32; 2] {
-        ends.map(|end| match self.nodes[usize::from(end)] {
-            LocalNode::Own(place) => place,
-            LocalNode::Between(_) => unreachable!("invariant: ends of a tied node are vertices"),
-        })
-    }
-
     fn gather(&self, values: &[f64], cell_values: &mut Vec<f64>) {
         cell_values.clear();
-        for node in &self.nodes {
-            match *node {
-                LocalNode::Own(place) => cell_values.extend_from_slice(&values[3 * place as usize..][..3]),
-                LocalNode::Between(ends) => {
-                    let [a, b] = self.own(ends).map(|place| &values[3 * place as usize..][..3]);
-                    cell_values.extend(a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)));
-                }
-            }
+        self.nodes.iter().for_each(|&place| cell_values.extend_from_slice(&values[3 * place as usize..][..3]));
+        for tie in &self.ties {
+            let [tied, a, b] = tie.map(|node| 3 * usize::from(node));
+            (0..3).for_each(|axis| cell_values[tied + axis] += 0.5 * (cell_values[a + axis] + cell_values[b + axis]));
         }
     }
 
-    /// Hands the rows and columns of tied nodes over to their ends: K ← Tᵀ K T with u = T (own displacements). `matrix`
-    /// is a lower triangle by rows.
+    /// K ← Tᵀ K T for u = T û, in which tied nodes move with the mean of their ends; `matrix` is a lower triangle by rows.
     fn fold(&self, matrix: &mut [f64]) {
         let size = 3 * self.nodes.len();
         let at = |row: usize, column: usize| lower_start(row.max(column)) + row.min(column);
-        for (node, tie) in self.nodes.iter().enumerate() {
-            let LocalNode::Between(ends) = *tie else { continue };
+        for tie in &self.ties {
+            let [tied, a, b] = tie.map(|node| 3 * usize::from(node));
             for component in 0..3 {
-                let tied = 3 * node + component;
+                let [tied, ends @ ..] = [tied, a, b].map(|first| first + component);
                 let column: Vec<f64> = (0..size).map(|row| matrix[at(row, tied)]).collect();
                 let own = column[tied];
-                for &end in &ends {
-                    let end = 3 * usize::from(end) + component;
-                    for (row, entry) in column.iter().enumerate().filter(|(row, _)| *row != tied) {
+                for end in ends {
+                    for (row, entry) in column.iter().enumerate() {
                         // The diagonal of an end takes its coupling with the tied node twice.
                         matrix[at(row, end)] += if row == end { *entry } else { 0.5 * entry };
                     }
                 }
-                let [a, b] = ends.map(|end| 3 * usize::from(end) + component);
+                let [a, b] = ends;
                 for (row, column) in [(a, a), (b, b), (a, b)] {
                     matrix[at(row, column)] += 0.25 * own;
                 }
-                (0..size).for_each(|row| matrix[at(row, tied)] = 0.0);
             }
         }
     }
 }
 
-/// Two nodes of a cell by their places among its nodes.
-type Ends8 = [u8; 2];
-
 fn local_cell(body: &Body, nodes: &[u32], cell: usize) -> LocalCell {
     let all = body.mesh.cell(cell).nodes;
     let place = |node: u32| all.iter().position(|other| *other == node).map_or(0, |place| place as u8);
-    let local = |&node: &u32| match body.ends_of(node) {
-        Some(ends) => LocalNode::Between(ends.map(place)),
-        None => LocalNode::Own(narrow(nodes.binary_search(&node).expect("invariant: taken from these cells"))),
-    };
-    LocalCell { nodes: all.iter().map(local).collect() }
+    let tie = |(index, &node): (usize, &u32)| body.ends_of(node).map(|[a, b]| [index as u8, place(a), place(b)]);
+    let local = |node: &u32| narrow(nodes.binary_search(node).expect("invariant: taken from these cells"));
+    LocalCell { nodes: all.iter().map(local).collect(), ties: all.iter().enumerate().filter_map(tie).collect() }
 }
 
 impl PiecePattern {
     fn new(cells: Vec<LocalCell>, points: Vec<[f64; 3]>, fixing: [usize; 3]) -> Self {
         let mut graph = vec![Vec::new(); points.len()];
-        let own = |cell: &LocalCell| -> Vec<u32> {
-            let own = |node: &LocalNode| if let LocalNode::Own(place) = *node { Some(place) } else { None };
-            cell.nodes.iter().filter_map(own).collect()
-        };
-        for cell in &cells {
-            let nodes = own(cell);
-            nodes.iter().for_each(|&node| graph[node as usize].extend_from_slice(&nodes));
+        for LocalCell { nodes, .. } in &cells {
+            nodes.iter().for_each(|&node| graph[node as usize].extend_from_slice(nodes));
         }
         fixing.iter().for_each(|&node| graph[node].extend(fixing.map(narrow)));
         for (node, neighbours) in graph.iter_mut().enumerate() {
@@ -293,21 +261,14 @@ fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
 
 /// Positions of the lower entries of the matrix of a cell.
 fn scatter(cell: &LocalCell, lower: &LowerPattern) -> Vec<u32> {
-    let dof = |dof: usize| match cell.nodes[dof / 3] {
-        LocalNode::Own(place) => Some(3 * place as usize + dof % 3),
-        LocalNode::Between(_) => None,
-    };
+    let dof = |dof: usize| 3 * cell.nodes[dof / 3] as usize + dof % 3;
     let size = 3 * cell.nodes.len();
     let mut positions = Vec::with_capacity(lower_start(size));
     for row in 0..size {
         for column in 0..=row {
-            positions.push(match (dof(row), dof(column)) {
-                (Some(row), Some(column)) => {
-                    let position = lower.position(row.max(column), row.min(column));
-                    narrow(position.expect("invariant: dofs of a cell are coupled"))
-                }
-                _ => NOWHERE,
-            });
+            let (row, column) = (dof(row), dof(column));
+            let position = lower.position(row.max(column), row.min(column));
+            positions.push(narrow(position.expect("invariant: dofs of a cell are coupled")));
         }
     }
     positions

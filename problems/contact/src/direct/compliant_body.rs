@@ -5,7 +5,7 @@
 //! ```
 //! B: the share of the body in the jumps of the packed rows, −1 times its directions for the upper body.
 
-use crate::body::Body;
+use crate::body::{Body, Place};
 use crate::direct::condensation::CondensedBody;
 use crate::equilibrium::modes::{OwnMotion, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactRows};
@@ -182,7 +182,7 @@ fn contact_motions(
     let motion = |OwnMotion { coefficients, resultant }: OwnMotion| {
         let at = |&place: &usize| {
             let point = positions[pattern.piece.nodes[place] as usize];
-            pattern.axes.turn_at(place, rigid.displacement(number, &coefficients, point))
+            pattern.axes.turn_at(place, rigid.displacement(number, &coefficients, Place::Point(point)))
         };
         let mut values: Vec<f64> = pattern.contact.iter().flat_map(at).collect();
         let dofs = values.iter_mut().enumerate().filter(|(dof, _)| pattern.holds(*dof));

@@ -6,12 +6,10 @@
 //! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
 //! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero).
 
+use crate::body::{MOTIONS, Place};
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
 use nalgebra::{DMatrix, DVector};
-
-/// Six motions per body: translations, and rotations about a common centre divided by a common length.
-pub const MOTIONS: usize = 6;
 
 /// Part of a motion's restraint that others do not share, relative to the restraint, that counts as zero.
 const FREE: f64 = 1e-11;
@@ -22,17 +20,14 @@ const UNHELD: f64 = 1e-13;
 /// Relative resultant that counts as zero.
 const UNLOADED: f64 = 1e-9;
 
-/// Displacement (three components) of the six motions at a point; `centre`, `length` in mm.
-pub fn motions(point: [f64; 3], centre: [f64; 3], length: f64) -> [[f64; 3]; MOTIONS] {
-    let x: [f64; 3] = std::array::from_fn(|axis| (point[axis] - centre[axis]) / length);
-    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
-}
-
 /// Rounding of a resultant relative to the load.
 const ROUNDING: f64 = 1e-15;
 
 /// Times the load or the forces of the fit that the forces which balance a load may sum up to.
 const MARGIN: f64 = 10.0;
+
+/// Length of an arm, relative to the size of the body, that is rounding: the middle node of a straight edge has none.
+const ARM_ROUNDING: f64 = 1e-10;
 
 /// What the rotations of a body refer to.
 #[derive(Debug, Clone, Copy)]
@@ -55,8 +50,8 @@ impl Frame {
     }
 
     /// Displacement of the six motions at a point.
-    pub(crate) fn motions(&self, point: [f64; 3]) -> [[f64; 3]; MOTIONS] {
-        motions(point, self.centre, self.length)
+    pub(crate) fn motions(&self, place: Place) -> [[f64; 3]; MOTIONS] {
+        place.motions(self.centre, self.length)
     }
 }
 
@@ -70,6 +65,8 @@ pub struct RigidScene {
     pub names: Vec<String>,
     /// Held directions: (body, point in mm, direction).
     pub held: Vec<(usize, [f64; 3], [f64; 3])>,
+    /// Arms of tied nodes, mm, with their body: rotations that turn them are no motions of the discrete body.
+    pub arms: Vec<(usize, [f64; 3])>,
     /// Nodal loads: (body, point in mm, force in N).
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
     /// The rows of every contact node: the normal one, then the tangential ones.
@@ -99,7 +96,7 @@ impl RigidScene {
     /// The work of a force on all motions.
     fn row(&self, &(body, point, force): &RowPart) -> DVector<f64> {
         let mut row = DVector::zeros(MOTIONS * self.frames.len());
-        for (mode, motion) in self.frames[body].motions(point).iter().enumerate() {
+        for (mode, motion) in self.frames[body].motions(Place::Point(point)).iter().enumerate() {
             row[MOTIONS * body + mode] = (0..3).map(|axis| motion[axis] * force[axis]).sum();
         }
         row
@@ -110,14 +107,24 @@ impl RigidScene {
         parts.iter().map(|part| self.row(part)).fold(DVector::zeros(MOTIONS * self.frames.len()), |sum, row| sum + row)
     }
 
-    /// The motions that the supports of one body leave free.
+    /// Whether an arm is more than rounding of the size of its body.
+    fn counts(&self, body: usize, arm: &[f64; 3]) -> bool {
+        arm.iter().any(|part| part.abs() > ARM_ROUNDING * self.frames[body].length)
+    }
+
+    /// The motions that supports and tied nodes of one body leave free.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
         let row = |point, force: [f64; 3]| {
-            let works = self.frames[body].motions(point).map(|m| (0..3).map(|axis| m[axis] * force[axis]).sum::<f64>());
+            let works = self.frames[body].motions(Place::Point(point)).map(|m| (0..3).map(|axis| m[axis] * force[axis]).sum::<f64>());
             DVector::from_row_slice(&works)
         };
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
-        let free = kernel(&held.map(|&(_, point, direction)| row(point, direction)).collect::<Vec<_>>(), MOTIONS);
+        let mut rows: Vec<DVector<f64>> = held.map(|&(_, point, direction)| row(point, direction)).collect();
+        for (_, arm) in self.arms.iter().filter(|(own, arm)| *own == body && self.counts(body, arm)) {
+            let motions = self.frames[body].motions(Place::Arm(*arm));
+            rows.extend((0..3).map(|axis| DVector::from_iterator(MOTIONS, motions.iter().map(|motion| motion[axis]))));
+        }
+        let free = kernel(&rows, MOTIONS);
         let along = |motion: &DVector<f64>| {
             let loads = self.loads.iter().filter(|(loaded, ..)| *loaded == body);
             let resultant = loads.map(|&(_, point, force)| row(point, force).dot(motion)).sum();
@@ -126,9 +133,9 @@ impl RigidScene {
         free.iter().map(along).collect()
     }
 
-    /// Displacement of a point of a body in one of its motions.
-    pub(crate) fn displacement(&self, body: usize, motion: &[f64], point: [f64; 3]) -> [f64; 3] {
-        let basis = self.frames[body].motions(point);
+    /// Displacement of a place of a body in one of its motions.
+    pub(crate) fn displacement(&self, body: usize, motion: &[f64], place: Place) -> [f64; 3] {
+        let basis = self.frames[body].motions(place);
         std::array::from_fn(|axis| basis.iter().zip(motion).map(|(basis, share)| basis[axis] * share).sum())
     }
 

@@ -221,7 +221,9 @@ impl ContactProblem {
         };
         let frames = positions.iter().enumerate().map(frame).collect();
         let names = self.bodies.iter().map(|body| body.name.clone()).collect();
-        RigidScene { names, held, loads, contact, frames }
+        let arms = self.bodies.iter().zip(positions).enumerate();
+        let arms = arms.flat_map(|(number, (body, positions))| body.arms(positions).map(move |arm| (number, arm)));
+        RigidScene { names, held, arms: arms.collect(), loads, contact, frames }
     }
 
     /// Σ|f|, magnitudes of all nodal loads at the start, N.

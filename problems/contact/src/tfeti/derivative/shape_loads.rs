@@ -7,7 +7,7 @@
 
 use crate::body::shape_force::shape_forces;
 use crate::equilibrium::RowChange;
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
 use crate::linear::real::Real;
 use crate::shape::Velocities;

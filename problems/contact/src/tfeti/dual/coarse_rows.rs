@@ -3,7 +3,7 @@
 //! A cluster is a single subdomain unless the tearing joins several. The motions at the ghosts come from the processes
 //! that own them. A contact row is formed by its owner, and all processes are told.
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::tfeti::dual::rigid_rows::Six;
 use crate::tfeti::torn::{TornModel, TornSystem};
 

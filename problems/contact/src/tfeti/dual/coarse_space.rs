@@ -5,7 +5,7 @@
 //! G = Rᵀ Bᵀ,   e = Rᵀ f:      G λ = e is the equilibrium of all clusters,      Gᵀ a are the jumps of rigid amplitudes a
 //! ```
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
 use crate::linear::entry::Entry;

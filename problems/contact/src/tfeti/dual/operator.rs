@@ -1,6 +1,6 @@
 //! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::linear::entry::{Entry, Row};
 use crate::linear::real::Real;
 use crate::linear::right_side::RightSide;

@@ -1,6 +1,6 @@
 //! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a cluster or single subdomain.
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::linear::entry::{Entry, vectorized};
 use rayon::prelude::*;
 use std::ops::Range;

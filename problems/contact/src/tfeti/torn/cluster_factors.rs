@@ -11,7 +11,7 @@
 //!
 //! References: \[KlawonnRheinbach2010\], \[RihaBrzobohatyMarkopoulosMecaKozubek2016\].
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::{MOTIONS, Place};
 use crate::error::ContactError;
 use crate::linear::dense::{DenseLu, multiply_columns};
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
@@ -46,7 +46,7 @@ struct MemberFactors {
 const SINGULAR: f64 = 1e-12;
 
 /// Amplitudes of the six rigid motions of a cluster along the orthonormal modes of its subdomains, orthonormal.
-fn motions(coordinates: &[Vec<[f64; 3]>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>> {
+fn motions(coordinates: &[Vec<Place>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>> {
     let whole = orthonormal_modes(&coordinates.concat());
     let amplitudes = |motion: &Vec<f64>| {
         let mut first = 0;
@@ -82,7 +82,7 @@ fn held(motions: &[Vec<f64>]) -> Mat<f64> {
 }
 
 /// Whether the rows of a cluster leave it no more than the six rigid motions; `coordinates` of its nodes.
-pub fn moves_as_one_body(rows: &ClusterRows, coordinates: &[Vec<[f64; 3]>]) -> bool {
+pub fn moves_as_one_body(rows: &ClusterRows, coordinates: &[Vec<Place>]) -> bool {
     let modes: Vec<Vec<Vec<f64>>> = coordinates.iter().map(|nodes| orthonormal_modes(nodes)).collect();
     let modes: Vec<&[Vec<f64>]> = modes.iter().map(Vec::as_slice).collect();
     let rigid = rigid_rows(rows, &modes);
@@ -98,7 +98,7 @@ impl ClusterFactors {
     pub fn new(
         rows: &ClusterRows,
         parts: &[Arc<SubdomainFactors>],
-        coordinates: &[Vec<[f64; 3]>],
+        coordinates: &[Vec<Place>],
         stiffness: f64,
     ) -> Result<Self, ContactError> {
         let modes: Vec<&[Vec<f64>]> = parts.iter().map(|part| part.modes.as_slice()).collect();

@@ -7,7 +7,7 @@
 //! adds lies in the trailing block, whose amplitudes all count as coupled. A cluster is a single subdomain unless the
 //! tearing joins several.
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;

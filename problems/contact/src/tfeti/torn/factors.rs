@@ -15,8 +15,7 @@
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
 use crate::body::elasticity::Material;
-use crate::body::{Body, Piece, PiecePattern};
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::{Body, MOTIONS, Piece, PiecePattern, Place};
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::entry::{Entry, vectorized};
@@ -110,7 +109,7 @@ impl SubdomainFactors {
         let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
         let is_near = body.materials().iter().any(|material| material.compressible_neighbour().is_some());
         let compressible = is_near.then(|| piece.assemble(body, positions, near));
-        let coordinates: Vec<[f64; 3]> = piece.positions(positions).collect();
+        let coordinates: Vec<Place> = piece.places(body, positions).collect();
         let modes = orthonormal_modes(&coordinates);
         let resultants = std::array::from_fn(|mode| dot(&modes[mode], load));
         let regularised = regularise(pattern, &stiffness, &modes);

@@ -1,9 +1,9 @@
 //! The torn scene: what is fixed for a run, and the factored system of a shape. A process holds its subdomains only.
 
 use crate::body::loads::piece_loads;
-use crate::body::{Body, Piece};
+use crate::body::{Body, Piece, Place};
 use crate::communication::Communication;
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::equilibrium::{Configuration, ContactProblem, ContactRows};
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
@@ -224,8 +224,11 @@ impl TornModel {
         let own = own.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body);
         let join = |cluster: usize| {
             let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
-            let coordinates: Vec<Vec<[f64; 3]>> =
-                members.clone().map(|index| self.piece(index).1.positions(positions).collect()).collect();
+            let places = |index: usize| {
+                let (body, piece) = self.piece(index);
+                piece.places(body, positions).collect::<Vec<Place>>()
+            };
+            let coordinates: Vec<Vec<Place>> = members.clone().map(places).collect();
             let first = parts.partition_point(|(index, _)| *index < members.start);
             let parts: Vec<Arc<SubdomainFactors>> =
                 parts[first..first + members.len()].iter().map(|(_, part)| Arc::clone(part)).collect();
@@ -278,9 +281,10 @@ impl TornModel {
             for (index, (subdomain, part)) in self.subdomains.iter().zip(&system.parts).enumerate() {
                 let body = subdomain.body;
                 let coefficients = &motion[MOTIONS * body..MOTIONS * (body + 1)];
-                let nodes = self.piece(index).1.positions(&positions[body]);
+                let (own, piece) = self.piece(index);
+                let places = piece.places(own, &positions[body]);
                 let displacement: Vec<f64> =
-                    nodes.flat_map(|point| rigid.displacement(body, coefficients, point)).collect();
+                    places.flat_map(|place| rigid.displacement(body, coefficients, place)).collect();
                 amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
             }
             let mut amplitudes = self.clusters.gather(&system.cluster_resultants(amplitudes), MOTIONS);
@@ -410,7 +414,7 @@ fn check_motions(
     }
     let nodes = |number: usize| {
         let (body, piece) = numbering.place(number);
-        bodies[body].pieces[piece].positions(bodies[body].mesh.nodes()).collect::<Vec<_>>()
+        bodies[body].pieces[piece].places(&bodies[body], bodies[body].mesh.nodes()).collect::<Vec<_>>()
     };
     let own = distribution.owned();
     let first = if own.is_empty() { 0 } else { numbering.cluster_of(own.start) };

@@ -14,7 +14,7 @@ pub fn whole_bodies(model: &TornModel, positions: &Positions, torn: &TornVector)
 }
 
 /// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each
-/// of the c copies of a node carries 1/c of its entries; entries of a tied node go to its ends.
+/// of the c copies of a node carries 1/c of its entries; the ends of a tied node carry half of its entries besides.
 pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
     let mut torn = model.zeros();
     let mut first = 0;
@@ -24,7 +24,7 @@ pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
         first += 3 * count;
         for node in 0..count as u32 {
             let Some(ends) = body.ends_of(node) else { continue };
-            let tied = std::mem::take(&mut own[node as usize]);
+            let tied = own[node as usize];
             ends.iter().for_each(|&end| (0..3).for_each(|axis| own[end as usize][axis] += 0.5 * tied[axis]));
         }
         let mut copies = vec![0.0; count];
@@ -61,15 +61,15 @@ fn whole_body(model: &TornModel, number: usize, positions: &Positions, torn: &[f
     }
     let mut displacement: Vec<[f64; 3]> =
         sums.chunks_exact(4).map(|sum| std::array::from_fn(|component| sum[component] / sum[3].max(1.0))).collect();
-    for node in 0..count as u32 {
-        if let Some([a, b]) = body.ends_of(node) {
-            let (a, b) = (displacement[a as usize], displacement[b as usize]);
-            displacement[node as usize] = std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]));
-        }
-    }
     let mut spread = vec![0.0; count];
     for (node, copy) in copies() {
         spread[node] += copy.iter().zip(displacement[node]).map(|(copy, mean)| (copy - mean).powi(2)).sum::<f64>();
+    }
+    for node in 0..count as u32 {
+        if let Some([a, b]) = body.ends_of(node).map(|ends| ends.map(|end| displacement[end as usize])) {
+            let own = &mut displacement[node as usize];
+            (0..3).for_each(|axis| own[axis] += 0.5 * (a[axis] + b[axis]));
+        }
     }
     let before: usize = model.problem.bodies[..number].iter().map(|body| body.pieces.len()).sum();
     let mut subdomains = vec![0; body.mesh.cell_count()];

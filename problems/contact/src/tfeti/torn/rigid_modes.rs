@@ -1,21 +1,22 @@
 //! The six rigid body modes of a floating subdomain, known analytically and orthonormalised.
 
-use crate::equilibrium::modes::{MOTIONS, motions};
+use crate::body::{MOTIONS, Place};
 use crate::linear::sums::Whole;
 use crate::linear::vector::norm;
 
 /// Orthonormal basis of the rigid motions of a set of nodes, six columns of three dofs per node.
-pub fn orthonormal_modes(nodes: &[[f64; 3]]) -> Vec<Vec<f64>> {
-    let count = nodes.len() as f64;
-    let centre: [f64; 3] = std::array::from_fn(|axis| nodes.iter().map(|node| node[axis]).sum::<f64>() / count);
-    let length = nodes
+pub fn orthonormal_modes(nodes: &[Place]) -> Vec<Vec<f64>> {
+    let points: Vec<[f64; 3]> = nodes.iter().filter_map(|place| place.point()).collect();
+    let count = points.len() as f64;
+    let centre: [f64; 3] = std::array::from_fn(|axis| points.iter().map(|node| node[axis]).sum::<f64>() / count);
+    let length = points
         .iter()
         .map(|node| (0..3).map(|axis| (node[axis] - centre[axis]).powi(2)).sum::<f64>())
         .fold(0.0, f64::max)
         .sqrt();
     let mut modes = vec![Vec::new(); MOTIONS];
     for &node in nodes {
-        for (mode, motion) in modes.iter_mut().zip(motions(node, centre, length)) {
+        for (mode, motion) in modes.iter_mut().zip(node.motions(centre, length)) {
             mode.extend_from_slice(&motion);
         }
     }

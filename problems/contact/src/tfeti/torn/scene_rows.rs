@@ -37,7 +37,7 @@ impl Copies {
         Self { starts, dofs }
     }
 
-    /// First torn dofs of the copies of a node; none of a tied one.
+    /// First torn dofs of the copies of a node.
     pub fn of(&self, node: u32) -> &[usize] {
         let node = node as usize;
         &self.dofs[self.starts[node] as usize..self.starts[node + 1] as usize]

@@ -1,6 +1,6 @@
 //! The factored subdomains of one shape, and the clusters that they are joined to.
 
-use crate::equilibrium::modes::MOTIONS;
+use crate::body::MOTIONS;
 use crate::linear::entry::Entry;
 use crate::linear::right_side::RightSide;
 use crate::tfeti::torn::cluster_factors::ClusterFactors;

@@ -1,0 +1,1 @@
+//! A block as a Gmsh file is the block.

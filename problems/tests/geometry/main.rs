@@ -1,0 +1,5 @@
+//! Meshes, true normals and lattices, against an independent reference and against blocks.
+
+mod block_as_mesh;
+mod published;
+mod scenes;

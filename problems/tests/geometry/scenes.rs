@@ -1,0 +1,152 @@
+//! Scenes of the published cases.
+
+use contact::contact_objective::ContactObjective;
+use contact::contact_shape::ContactShape;
+use contact::solvers::{Processes, SolverKind, SolverPlan};
+use nonsmooth::{Accuracy, StateSolver, Vector};
+use scene_file::{Case, SceneFile, Setting};
+use serde_json::Value;
+use std::path::Path;
+
+/// A block of 6³ bricks with a spline of 6 × 6 heights.
+const BLOCK: &str = r#"
+name = "block"
+size = [100.0, 100.0]
+friction = 0.3
+
+[contact]
+
+[mesh]
+bricks = [6, 6, 6]
+subdomains = [2, 2, 2]
+
+[lower]
+material = { young_modulus = 1.1e5, poisson_ratio = 0.33 }
+supports = [{ face = "x1-min", held = ["u1", "u2"] }]
+loads = [{ face = "bottom", traction = [0.0, 0.0, 3000.0] }]
+
+[counter_surface]
+form = "waves"
+base = 103.0
+first = 1.0
+second = 2.0
+period = 100.0
+
+[surface]
+control_points = [6, 6]
+start = { form = "plane", height = 100.0 }
+
+[admissible]
+minimum_height = 50.0
+slope = 5.0
+volume = [5e5, 2e6]
+
+[objective]
+weight = "nodes"
+"#;
+
+/// A lug with a Bernstein lattice of 3³ control points.
+const LUG: &str = r#"
+name = "lug"
+friction = 0.3
+
+[contact]
+face = "nose"
+
+[body]
+mesh = "MESH"
+pieces = 5
+material = { young_modulus = 7e4, poisson_ratio = 0.35 }
+supports = [{ face = "wall", held = ["u1", "u2"] }]
+loads = [{ face = "top", traction = [0.0, 0.0, -800.0] }]
+
+[counter_surface]
+form = "tilted-plane"
+point = [0.0, 0.0, -0.05]
+normal = [0.05, -0.01, -1.0]
+
+[lattice]
+control_points = [3, 3, 3]
+box = [[-20.0, 0.0, 0.0], [20.0, 30.0, 40.0]]
+displacement = [-2.0, 2.0]
+hold_supports = false
+
+[objective]
+weight = "nodes"
+"#;
+
+/// The published cases.
+pub fn published() -> Vec<Value> {
+    serde_json::from_str(include_str!("../data/one_body.json")).expect("published cases")
+}
+
+/// The case of a scene file whose mesh lies beside the scenes.
+pub fn case(text: &str) -> Case {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let file = SceneFile::parse(text, "scene").expect("a scene file");
+    Case::new(&file, &folder).expect("a scene")
+}
+
+/// The text of a published case.
+pub fn text_of(published: &Value) -> String {
+    let base = match published["mesh"].as_str() {
+        Some("block") => BLOCK.to_owned(),
+        Some(mesh) => LUG.replace("MESH", mesh),
+        None => unreachable!("a mesh has a name"),
+    };
+    let base = base.replace("friction = 0.3", &format!("friction = {:?}", published["friction"].as_f64().expect("a number")));
+    let base = if published["projected"] == true { base.replace("[contact]", "[contact]\nnormal = \"x3\"") } else { base };
+    let obstacle = &published["obstacle"];
+    let vector = |key: &str| format!("{}", obstacle[key]);
+    let counter = match obstacle["type"].as_str() {
+        Some("sphere") => {
+            let side = if obstacle["side"] == 1 { "outside" } else { "inside" };
+            format!("form = \"ball\"\ncentre = {}\nradius = {:?}\nside = \"{side}\"", vector("centre"), number(&obstacle["radius"]))
+        }
+        Some("plane") => format!("form = \"tilted-plane\"\npoint = {}\nnormal = {}", vector("point"), vector("normal")),
+        _ => return base,
+    };
+    let (before, rest) = base.split_once("[counter_surface]").expect("a table");
+    let (_, after) = rest.split_once("\n\n").expect("a table after it");
+    // Integers are no numbers of TOML fields.
+    format!("{before}[counter_surface]\n{counter}\n\n{after}")
+}
+
+/// Θ of a case by a solver.
+pub fn objective(case: &Case, kind: SolverKind) -> ContactObjective {
+    let plan = SolverPlan { kind, ..SolverPlan::new(case.scene.clone(), kind) };
+    let shape = ContactShape::by(Processes::alone().solver(plan).expect("a solver"));
+    let measure = case.measure(shape.problem()).expect("a measure");
+    ContactObjective::new(shape, measure).expect("an objective")
+}
+
+/// The case with other values of some fields.
+pub fn with(text: &str, settings: &[(&str, &str)]) -> Case {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let file = SceneFile::parse(text, "scene").expect("a scene file");
+    let settings: Vec<Setting> = settings.iter().map(|(path, value)| Setting::read(path, value).expect(path)).collect();
+    Case::new(&file.with(&settings).expect("settings"), &folder).expect("a scene")
+}
+
+/// Value, gradient and state at some controls.
+pub fn solved(
+    objective: &ContactObjective,
+    controls: &Vector,
+) -> (f64, Vector, contact::contact_shape::ContactState) {
+    let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST).expect("a state");
+    let evaluation = objective.differentiate(controls, &state).expect("a gradient");
+    (evaluation.value, evaluation.subgradient, state)
+}
+
+pub fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+pub fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().expect("a list").iter().map(number).collect()
+}
+
+pub fn vectors(value: &Value) -> Vec<[f64; 3]> {
+    let vector = |value: &Value| <[f64; 3]>::try_from(numbers(value)).expect("three numbers");
+    value.as_array().expect("a list").iter().map(vector).collect()
+}
