@@ -178,9 +178,8 @@ fn contact(contact: &ContactFields, lower: &BodyFields) -> UnstructuredGrid {
     let facets = &contact.facets;
     let numbers = |values: &[f64]| Values::Scalars(spread(contact, values, 0.0));
     let vectors = |values: &[[f64; 3]]| Values::Vectors(spread(contact, values, [0.0; 3]));
-    let at_nodes = |values: &[[f64; 3]]| -> Vec<[f64; 3]> {
-        facets.nodes.iter().map(|&node| values[node as usize]).collect()
-    };
+    let at_nodes =
+        |values: &[[f64; 3]]| -> Vec<[f64; 3]> { facets.nodes.iter().map(|&node| values[node as usize]).collect() };
     let status: Vec<i32> = contact.status.iter().map(|&status| status_code(status)).collect();
     let mut point_data = vec![
         Array::new("displacement", "mm", Values::Vectors(at_nodes(&lower.displacement))),

@@ -161,7 +161,11 @@ fn mesh_scene(file: &SceneFile, body: &MeshBodySection, folder: &Path) -> Result
         ("admissible", file.admissible.is_some()),
     ] {
         if given {
-            return Err(SceneError::out_of_range(field, "a value", "none beside [body], which has a mesh and a lattice"));
+            return Err(SceneError::out_of_range(
+                field,
+                "a value",
+                "none beside [body], which has a mesh and a lattice",
+            ));
         }
     }
     let MeshFile { mesh, notes } = mesh_file::read(&folder.join(&body.mesh), body.unit)?;
@@ -219,7 +223,9 @@ fn counter_surface(
         }
         &CounterSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
         &CounterSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
-        &CounterSection::Cylinder { point, axis, radius, side } => CounterSurface::Cylinder { point, axis, radius, side },
+        &CounterSection::Cylinder { point, axis, radius, side } => {
+            CounterSurface::Cylinder { point, axis, radius, side }
+        }
     })
 }
 

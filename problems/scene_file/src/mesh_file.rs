@@ -60,7 +60,9 @@ fn convert(gmsh: &GmshMesh, unit: UnitName, name: &str) -> Result<MeshFile, Scen
     let mut notes = vec![description(gmsh, &nodes, name, unit)];
     if !middles.is_empty() {
         let count = middles.len();
-        notes.push(format!("{name}: tet4 cells got {count} nodes in the middles of their edges and are tet10 cells now"));
+        notes.push(format!(
+            "{name}: tet4 cells got {count} nodes in the middles of their edges and are tet10 cells now"
+        ));
     }
     let mesh = Mesh::new(nodes, cells)?;
     check_cells(gmsh, &mesh, &mut notes, name)?;
@@ -120,7 +122,11 @@ fn check_cells(gmsh: &GmshMesh, mesh: &Mesh, notes: &mut Vec<String>, name: &str
         poor += usize::from(quality < POOR);
     }
     if let Some(&first) = inverted.first() {
-        let value = format!("an inverted or flat cell (element {} of the file, {} in all)", gmsh.cells[first].tag, inverted.len());
+        let value = format!(
+            "an inverted or flat cell (element {} of the file, {} in all)",
+            gmsh.cells[first].tag,
+            inverted.len()
+        );
         return Err(SceneError::out_of_range("cells", value, "cells of positive volume at every integration point"));
     }
     if poor > 0 {

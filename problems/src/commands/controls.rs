@@ -129,7 +129,9 @@ enum Rows {
 pub fn written(controls: &[f64], layout: Layout) -> Result<String, Failure> {
     let along = match layout {
         Layout::Grid([_, along]) => along,
-        Layout::Plain(_) => return serde_json::to_string(controls).map(|text| text + "\n").map_err(Failure::computation),
+        Layout::Plain(_) => {
+            return serde_json::to_string(controls).map(|text| text + "\n").map_err(Failure::computation);
+        }
     };
     let rows: Result<Vec<String>, _> = controls.chunks(along.max(1)).map(serde_json::to_string).collect();
     Ok(format!("[\n  {}\n]\n", rows.map_err(Failure::computation)?.join(",\n  ")))

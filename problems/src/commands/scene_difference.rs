@@ -28,7 +28,8 @@ pub fn differences(
     // The degree that a file leaves out is the default one.
     let spline = |scene: &LoadedScene| scene.case.scene.heights().map(|heights| heights.spline);
     let same_spline = spline(there) == spline(here);
-    let is_silent = |field: &str| field.ends_with(".file") || field == "body.mesh" || (same_spline && field == "surface.degree");
+    let is_silent =
+        |field: &str| field.ends_with(".file") || field == "body.mesh" || (same_spline && field == "surface.degree");
     found.retain(|difference| !is_silent(&difference.field) && counts(&difference.field));
     Ok(found)
 }

@@ -32,7 +32,9 @@ fn check(published: &Value, kind: SolverKind) {
     let all = numbers(&nodes["node"]);
     let places: Vec<usize> = points
         .iter()
-        .map(|point| all.iter().position(|node| *node == f64::from(point.node)).expect("a contact node of the reference"))
+        .map(|point| {
+            all.iter().position(|node| *node == f64::from(point.node)).expect("a contact node of the reference")
+        })
         .collect();
     let chosen = |values: Vec<f64>| places.iter().map(|&place| values[place]).collect::<Vec<f64>>();
     let chosen3 = |values: Vec<[f64; 3]>| places.iter().flat_map(|&place| values[place]).collect::<Vec<f64>>();
@@ -59,7 +61,10 @@ fn check(published: &Value, kind: SolverKind) {
 
 #[test]
 fn total_feti_finds_the_published_states_and_gradients() {
-    published().iter().for_each(|case| { eprintln!("{}", case["name"]); check(case, SolverKind::Newton) });
+    published().iter().for_each(|case| {
+        eprintln!("{}", case["name"]);
+        check(case, SolverKind::Newton)
+    });
 }
 
 #[test]

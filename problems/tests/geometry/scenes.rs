@@ -94,14 +94,20 @@ pub fn text_of(published: &Value) -> String {
         Some(mesh) => LUG.replace("MESH", mesh),
         None => unreachable!("a mesh has a name"),
     };
-    let base = base.replace("friction = 0.3", &format!("friction = {:?}", published["friction"].as_f64().expect("a number")));
-    let base = if published["projected"] == true { base.replace("[contact]", "[contact]\nnormal = \"x3\"") } else { base };
+    let base =
+        base.replace("friction = 0.3", &format!("friction = {:?}", published["friction"].as_f64().expect("a number")));
+    let base =
+        if published["projected"] == true { base.replace("[contact]", "[contact]\nnormal = \"x3\"") } else { base };
     let obstacle = &published["obstacle"];
     let vector = |key: &str| format!("{}", obstacle[key]);
     let counter = match obstacle["type"].as_str() {
         Some("sphere") => {
             let side = if obstacle["side"] == 1 { "outside" } else { "inside" };
-            format!("form = \"ball\"\ncentre = {}\nradius = {:?}\nside = \"{side}\"", vector("centre"), number(&obstacle["radius"]))
+            format!(
+                "form = \"ball\"\ncentre = {}\nradius = {:?}\nside = \"{side}\"",
+                vector("centre"),
+                number(&obstacle["radius"])
+            )
         }
         Some("plane") => format!("form = \"tilted-plane\"\npoint = {}\nnormal = {}", vector("point"), vector("normal")),
         _ => return base,
@@ -129,10 +135,7 @@ pub fn with(text: &str, settings: &[(&str, &str)]) -> Case {
 }
 
 /// Value, gradient and state at some controls.
-pub fn solved(
-    objective: &ContactObjective,
-    controls: &Vector,
-) -> (f64, Vector, contact::contact_shape::ContactState) {
+pub fn solved(objective: &ContactObjective, controls: &Vector) -> (f64, Vector, contact::contact_shape::ContactState) {
     let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST).expect("a state");
     let evaluation = objective.differentiate(controls, &state).expect("a gradient");
     (evaluation.value, evaluation.subgradient, state)

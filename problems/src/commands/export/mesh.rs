@@ -44,7 +44,11 @@ pub fn gmsh_file(problem: &ContactProblem, controls: &[f64]) -> Result<OutputFil
     let mesh = &problem.bodies[0].mesh;
     let gmsh = gmsh_mesh(mesh, problem.map.positions(controls));
     let content = gmsh::write(&gmsh, true).map_err(Failure::computation)?;
-    let what = format!("the mesh of the lower body in this shape: {} nodes, {} cells, mm", mesh.node_count(), mesh.cell_count());
+    let what = format!(
+        "the mesh of the lower body in this shape: {} nodes, {} cells, mm",
+        mesh.node_count(),
+        mesh.cell_count()
+    );
     Ok(OutputFile { name: "lower_body.msh", content, what, triangles: None })
 }
 
@@ -87,5 +91,9 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
         table += &format!("{node},{}\n", numbers.join(","));
     }
     let count = problem.boundary.points.len();
-    OutputFile::text("surface.csv", table, format!("places of the {count} contact nodes at the start and in this shape"))
+    OutputFile::text(
+        "surface.csv",
+        table,
+        format!("places of the {count} contact nodes at the start and in this shape"),
+    )
 }

@@ -86,7 +86,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder: path.display().to_string(),
         shape: origin,
         differences: differences.iter().map(Difference::to_string).collect(),
-        tolerance: ((options.stl || options.is_free()) && problem.scene.blocks().is_some()).then(|| options.tolerance()),
+        tolerance: ((options.stl || options.is_free()) && problem.scene.blocks().is_some())
+            .then(|| options.tolerance()),
         files: files.iter().map(describe).collect(),
     };
     let text = arguments.printed(result.to_string(), json(&result)?);

@@ -80,7 +80,9 @@ impl KeptRun {
         let of_surface = differences(&own, loaded, |field| is_below(field, &SURFACES))?;
         let (there, here) = (&own.case.scene, &loaded.case.scene);
         let other_files = || match () {
-            () if there.counter_surface != here.counter_surface => Some("the heights of counter_surface differ".to_owned()),
+            () if there.counter_surface != here.counter_surface => {
+                Some("the heights of counter_surface differ".to_owned())
+            }
             () if there.blocks().is_none() && there.geometry != here.geometry => Some("the meshes differ".to_owned()),
             () => None,
         };

@@ -72,12 +72,7 @@ fn relief(heights: &Heights) -> String {
 }
 
 /// Lines on which triangles keep their distance.
-fn divided(
-    pieces: &Pieces,
-    block: Block<'_>,
-    controls: &[f64],
-    tolerance: f64,
-) -> Result<[Vec<f64>; 2], Failure> {
+fn divided(pieces: &Pieces, block: Block<'_>, controls: &[f64], tolerance: f64) -> Result<[Vec<f64>; 2], Failure> {
     let top = block.scene.upper.as_ref().map(|upper| upper.top);
     let heights = controls.iter().copied().chain(block.size).chain(top);
     let reach = heights.fold(0.0, |reach: f64, length| reach.max(length.abs()));

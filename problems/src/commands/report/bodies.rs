@@ -89,10 +89,13 @@ impl Relief {
         let mut normals = vec![[0.0; 3]; start.len()];
         for facet in surface.faces() {
             for (index, &node) in facet.iter().enumerate() {
-                let (before, after) = (facet[(index + facet.len() - 1) % facet.len()], facet[(index + 1) % facet.len()]);
+                let (before, after) =
+                    (facet[(index + facet.len() - 1) % facet.len()], facet[(index + 1) % facet.len()]);
                 let edge = |to: usize| -> [f64; 3] { std::array::from_fn(|axis| start[to][axis] - start[node][axis]) };
                 let (a, b) = (edge(after), edge(before));
-                (0..3).for_each(|i| normals[node][i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+                (0..3).for_each(|i| {
+                    normals[node][i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]
+                });
             }
         }
         for normal in &mut normals {
@@ -166,15 +169,15 @@ pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Resu
 pub fn surface_map(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let relief = Relief::new(problem);
-    let panel = |(caption, values)| MapPanel {
-        caption,
-        points: relief.surface.plan(),
-        faces: relief.surface.faces(),
-        values,
-    };
+    let panel =
+        |(caption, values)| MapPanel { caption, points: relief.surface.plan(), faces: relief.surface.faces(), values };
     Map {
         name: "surface_map".into(),
-        title: format!("{}: contact surface of the lower body, lines of equal {}", problem.scene.name, relief.quantity()),
+        title: format!(
+            "{}: contact surface of the lower body, lines of equal {}",
+            problem.scene.name,
+            relief.quantity()
+        ),
         quantity: relief.quantity().into(),
         unit: "mm".into(),
         axes: relief.surface.axis_names(),

@@ -25,7 +25,9 @@ impl ContactSurface {
         for facet in &facets.facets {
             for (index, &from) in facet.iter().enumerate() {
                 let (a, b) = (places[from], places[facet[(index + 1) % facet.len()]]);
-                (0..3).for_each(|i| normal[i] += 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]));
+                (0..3).for_each(|i| {
+                    normal[i] += 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+                });
             }
         }
         let across = (0..3).fold(2, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });
@@ -56,7 +58,11 @@ impl ContactSurface {
 
     /// Values at the nodes from those at the contact nodes, `rest` at the others.
     pub fn spread<T: Clone>(&self, values: &[T], rest: T) -> Vec<T> {
-        self.facets.points.iter().map(|point| point.map_or_else(|| rest.clone(), |point| values[point].clone())).collect()
+        self.facets
+            .points
+            .iter()
+            .map(|point| point.map_or_else(|| rest.clone(), |point| values[point].clone()))
+            .collect()
     }
 
     /// Names of the axes of the plan.

@@ -44,7 +44,9 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
     let bodies = seen.iter().map(|(_, fields)| fields.bodies.len()).min().unwrap_or(0);
     let names = [("volume_lower", "volume of the lower body"), ("volume_upper", "volume of the upper body")];
     for (body, (key, quantity)) in names.into_iter().enumerate().take(bodies) {
-        facts.push(row(key, quantity, "mm³", &|_, fields| fields.bodies[body].mesh.volume(&fields.bodies[body].positions)));
+        facts.push(row(key, quantity, "mm³", &|_, fields| {
+            fields.bodies[body].mesh.volume(&fields.bodies[body].positions)
+        }));
     }
     if objective.solver().problem().boundary.has_friction() {
         facts.push(row("friction_work", "friction work Σ|λ_T·slip|", "N·mm", &|shape, _| {

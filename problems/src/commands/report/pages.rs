@@ -74,7 +74,8 @@ fn controls(objective: &ContactObjective, controls: &[f64]) -> Section {
     match (&scene.shape, scene.blocks()) {
         (ShapeScene::Heights(shape), Some(blocks)) => heights(shape, blocks.size, controls),
         (ShapeScene::Lattice(lattice), _) => {
-            let rows = lattice.control_names().into_iter().zip(controls).map(|(name, value)| vec![name, number(*value)]);
+            let rows =
+                lattice.control_names().into_iter().zip(controls).map(|(name, value)| vec![name, number(*value)]);
             let table = Block::table(["control", "displacement, mm"], rows.collect::<Vec<_>>());
             Section::new("Displacements of the control points", vec![table])
         }

@@ -32,7 +32,8 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
     let scene = &problem.scene;
     let positions = problem.positions(controls).map_err(Failure::computation)?;
     let sides: [f64; 3] = std::array::from_fn(|axis| {
-        let lengths = positions.iter().map(|nodes| extent(nodes.iter().copied(), axis)).map(|[least, most]| most - least);
+        let lengths =
+            positions.iter().map(|nodes| extent(nodes.iter().copied(), axis)).map(|[least, most]| most - least);
         lengths.fold(0.0, f64::max)
     });
     let side = sides.into_iter().fold(0.0, f64::max);
@@ -54,7 +55,8 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
     }
     let mut marks = Vec::new();
     for (number, (body, (_, of_scene))) in problem.bodies.iter().zip(scene.bodies()).enumerate() {
-        let (nodes, lift) = if number == 0 { (&positions[0][..], [0.0; 3]) } else { (upper.as_deref().unwrap_or(&[]), lifted) };
+        let (nodes, lift) =
+            if number == 0 { (&positions[0][..], [0.0; 3]) } else { (upper.as_deref().unwrap_or(&[]), lifted) };
         let name = if body.name == "body" { "body".to_owned() } else { format!("{} body", body.name) };
         let at = Place { body, nodes, name: &name, lift, side, viewer: view.towards_viewer() };
         marks.extend(of_scene.supports.iter().filter_map(|support| at.support(support)));
@@ -246,7 +248,9 @@ impl Place<'_> {
                 format!("{} MPa, in all {} N", vector(traction), number(size(traction) * self.area(face)))
             }
             LoadKind::Pressure(pressure) => format!("pressure {} MPa", number(*pressure)),
-            LoadKind::Resultant { force, moment, .. } => format!("{} N with moment {} N mm", vector(force), vector(moment)),
+            LoadKind::Resultant { force, moment, .. } => {
+                format!("{} N with moment {} N mm", vector(force), vector(moment))
+            }
             LoadKind::Formula(texts) => format!("traction ({}) MPa", texts.join(", ")),
             LoadKind::BodyForce(_) => String::new(),
         };
@@ -255,9 +259,9 @@ impl Place<'_> {
                 LoadKind::Traction(traction) => *traction,
                 LoadKind::Pressure(pressure) => normal.map(|part| -pressure * part),
                 LoadKind::Resultant { force, .. } => *force,
-                LoadKind::Formula(texts) => texts.each_ref().map(|text| {
-                    Formula::parse("formula", text).map_or(0.0, |formula| formula.value(*x))
-                }),
+                LoadKind::Formula(texts) => texts
+                    .each_ref()
+                    .map(|text| Formula::parse("formula", text).map_or(0.0, |formula| formula.value(*x))),
                 LoadKind::BodyForce(_) => [0.0; 3],
             }
         };

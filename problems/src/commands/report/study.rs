@@ -10,9 +10,7 @@ use crate::commands::study::row::{Outcome, Picture, Row, Solved};
 use crate::commands::study::table::{StudyJson, row_folder, values};
 use crate::commands::study::varied::parts;
 use figures::page::{Block, File, Page, Section};
-use figures::{
-    ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces,
-};
+use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
 
 /// Folder of the figures.
 const FIGURES: &str = "figures";
@@ -192,12 +190,7 @@ fn caption(row: &Row) -> String {
 fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
         let Picture { plan, faces, pressures, .. } = &solved.picture;
-        MapPanel {
-            caption: caption(row),
-            points: plan.clone(),
-            faces: faces.clone(),
-            values: pressures.clone(),
-        }
+        MapPanel { caption: caption(row), points: plan.clone(), faces: faces.clone(), values: pressures.clone() }
     };
     let axes = rows.first().map_or_else(Default::default, |shown| shown.solved.picture.axes.clone());
     Map {

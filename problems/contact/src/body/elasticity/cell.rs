@@ -95,6 +95,19 @@ impl CellNodes<f64> {
         }
     }
 
+    /// ∫|∇N_v|² dV per node, mm: its share in the stiffness of the body, for materials of shear modulus 1.
+    pub fn node_stiffness(&self) -> Vec<f64> {
+        with_points!(self, |points| {
+            let mut sums = vec![0.0; self.positions().len()];
+            for point in points {
+                for (sum, gradient) in sums.iter_mut().zip(&point.gradients) {
+                    *sum += point.volume * gradient.iter().map(|g| g * g).sum::<f64>();
+                }
+            }
+            sums
+        })
+    }
+
     /// ∂V/∂x per node, mm².
     pub fn volume_derivative(&self) -> Vec<[f64; 3]> {
         with_points!(self, |points| {

@@ -6,7 +6,8 @@
 //! contact:             Σ_sides weight · (mean over the copies along d)/ν,  ν = √(Σ weight²/m)
 //! λ_physical = λ/ν,  jump_physical = ν·jump:   all rows of a node share ν, so the friction cone keeps its form
 //! ```
-//! B_D Bᵀ = I with stiffness weights between bodies: B_D gives the softer body the larger share.
+//! B_D Bᵀ = I with stiffness weights between bodies and between the copies of a glued node: B_D gives the softer one the
+//! larger share. Copies of contact nodes share equally: with gluing and contact rows, B is orthogonal there.
 //!
 //! A process has the rows of B_E that touch its subdomains, by ascending owner: the owner of a row is the first
 //! subdomain that it touches. Rows of owners in other processes come first. Contact rows are known to all processes;
@@ -26,14 +27,14 @@ use crate::tfeti::torn::scene_rows::{
     ContactNode, Copies, EqualityRow, SceneRows, SparseRow, contact_cells, contact_rows, possible_directions,
 };
 use crate::tfeti::torn::vectors::RowVector;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
 /// What of B is the same for all shapes, on the torn vectors of a process.
 #[derive(Debug)]
 pub struct Constraints {
-    /// B_E: rows × torn vector.
-    equality: Csr,
+    /// B_E, and its part of B_D: rows × torn vector.
+    equality: [Csr; 2],
     /// The contact nodes, from which the contact rows of a shape are made.
     contact: Vec<ContactNode>,
     /// The subdomain that owns every packed contact row.
@@ -89,8 +90,9 @@ impl Constraints {
         let copies: Vec<Copies> =
             bodies.iter().enumerate().map(|(number, body)| Copies::new(number, body, numbering)).collect();
         let joints = Joints::new(bodies, &copies, numbering);
-        let all = SceneRows::new(bodies, &copies, numbering, &subdomains, &joints);
         let cells = contact_cells(boundary, bodies);
+        let nodes: Vec<HashSet<u32>> = cells.iter().map(|cells| cells.keys().copied().collect()).collect();
+        let all = SceneRows::new((bodies, &nodes), &copies, numbering, &subdomains, &joints);
         let contact: Vec<ContactNode> =
             boundary.points.iter().map(|point| ContactNode::new(point, bodies, &copies, &cells)).collect();
         let dofs: Vec<Vec<usize>> = contact
@@ -104,7 +106,10 @@ impl Constraints {
         let own = interface.owned_count();
         let place = |(dof, value): &(usize, f64)| interface.place(*dof).map(|place| (place, *value));
         let whole = |row: &SparseRow| row.iter().filter_map(place).collect::<SparseRow>();
-        let equality = Csr::from_rows(interface.torn_count(), all.equality.iter().map(|row| whole(&row.entries)));
+        let rows = |entries: fn(&EqualityRow) -> &SparseRow| {
+            Csr::from_rows(interface.torn_count(), all.equality.iter().map(|row| whole(entries(row))))
+        };
+        let equality = [rows(|row| &row.entries), rows(|row| &row.weights)];
         let joined = cluster_rows(&all, numbering, &subdomains);
         let first = numbering.starts()[subdomains.start];
         let mut touched = vec![false; own];
@@ -145,10 +150,10 @@ impl Constraints {
         let place = |(dof, value): &(usize, f64)| interface.place(*dof).map(|place| (place, *value));
         let matrices = |kind: usize| {
             let within = |row: &[SparseRow; 2]| -> SparseRow { row[kind].iter().filter_map(place).collect() };
-            let mut rows = self.equality.clone();
+            let mut rows = self.equality[kind].clone();
             let own_rows = contact.iter().zip(&self.contact_owners);
             rows.extend(own_rows.map(|(row, owner)| if owned.contains(owner) { within(row) } else { vec![] }));
-            let equality = (0..self.equality_count).map(|row| self.equality.row(row).collect::<SparseRow>());
+            let equality = (0..self.equality_count).map(|row| self.equality[kind].row(row).collect::<SparseRow>());
             let all = equality.chain(contact.iter().map(within)).map(|mut row| {
                 row.retain(|(place, _)| *place < own);
                 row
@@ -161,7 +166,7 @@ impl Constraints {
 
     /// B_E: rows × torn vector.
     pub fn equality(&self) -> &Csr {
-        &self.equality
+        &self.equality[0]
     }
 
     /// Number of rows of this process.
@@ -319,7 +324,7 @@ fn interface(
     let mut builder = InterfaceBuilder::default();
     if !distribution.is_alone() {
         for row in &all.equality {
-            let dofs = || row.entries.iter().map(|(dof, _)| *dof);
+            let dofs = || row.weights.iter().map(|(dof, _)| *dof);
             builder.needs(&owned, dofs());
             let touched: BTreeSet<usize> = dofs().map(of_dof).collect();
             for other in touched.into_iter().filter(|other| *other != rank) {

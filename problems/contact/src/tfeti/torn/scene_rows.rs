@@ -4,17 +4,21 @@ use crate::body::Body;
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, Side};
 use crate::tfeti::torn::joints::Joints;
 use crate::tfeti::torn::numbering::Numbering;
-use std::collections::HashMap;
+use nalgebra::DMatrix;
+use std::cmp::Ordering;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// Entries (torn dof, value) of one row.
 pub type SparseRow = Vec<(usize, f64)>;
 
-/// First torn dofs of the copies of every node of a body, by ascending subdomain.
+/// First torn dofs of the copies of every node of a body, by ascending subdomain, with their stiffnesses.
 #[derive(Debug)]
 pub struct Copies {
     starts: Vec<u32>,
     dofs: Vec<usize>,
+    /// Of copies that are not the only one: what their subdomain resists motions of the node with, roughly, N/mm.
+    stiffness: Vec<f64>,
 }
 
 impl Copies {
@@ -28,13 +32,30 @@ impl Copies {
         nodes().for_each(|&node| starts[node as usize + 1] += 1);
         (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
         let (mut next, mut dofs) = (starts.clone(), vec![0; starts[starts.len() - 1] as usize]);
+        let mut stiffness = vec![0.0; dofs.len()];
+        let is_shared = |node: &u32| starts[*node as usize + 1] - starts[*node as usize] > 1;
         for &(subdomain, piece) in &pieces {
-            for (local, &node) in body.pieces[piece].nodes.iter().enumerate() {
+            let piece = &body.pieces[piece];
+            for &cell in &piece.cells {
+                let (cell, nodes) = (cell as usize, body.mesh.cell(cell as usize).nodes);
+                if nodes.iter().any(is_shared) {
+                    let own = body.mesh.cell_nodes(cell, body.mesh.nodes()).node_stiffness();
+                    let modulus = body.material(cell).shear_modulus();
+                    nodes.iter().zip(own).for_each(|(&node, own)| stiffness[next[node as usize] as usize] += modulus * own);
+                }
+            }
+            for (local, &node) in piece.nodes.iter().enumerate() {
                 dofs[next[node as usize] as usize] = numbering.starts()[subdomain] + 3 * local;
                 next[node as usize] += 1;
             }
         }
-        Self { starts, dofs }
+        Self { starts, dofs, stiffness }
+    }
+
+    /// Stiffnesses of the copies of a node.
+    fn stiffness_of(&self, node: u32) -> &[f64] {
+        let node = node as usize;
+        &self.stiffness[self.starts[node] as usize..self.starts[node + 1] as usize]
     }
 
     /// First torn dofs of the copies of a node.
@@ -51,6 +72,8 @@ pub struct EqualityRow {
     /// Its place among the rows of its owner.
     pub index: usize,
     pub entries: SparseRow,
+    /// The row of B_D.
+    pub weights: SparseRow,
 }
 
 /// The rows of B_E that concern a process, before their dofs are numbered.
@@ -65,8 +88,14 @@ pub struct SceneRows {
 }
 
 impl SceneRows {
-    /// The rows of B_E that touch a subdomain of `own`.
-    pub fn new(bodies: &[Body], copies: &[Copies], numbering: &Numbering, own: &Range<usize>, joints: &Joints) -> Self {
+    /// The rows of B_E that touch a subdomain of `own`; `contact`: the contact nodes of every body.
+    pub fn new(
+        (bodies, contact): (&[Body], &[HashSet<u32>]),
+        copies: &[Copies],
+        numbering: &Numbering,
+        own: &Range<usize>,
+        joints: &Joints,
+    ) -> Self {
         let (mut equality, mut counts, mut gluing_count) = (Vec::new(), vec![0; numbering.count()], 0);
         let own_clusters = match own.is_empty() {
             true => 0..0,
@@ -74,7 +103,7 @@ impl SceneRows {
         };
         let mut joined = vec![Vec::new(); own_clusters.len()];
         for (number, (body, copies)) in bodies.iter().zip(copies).enumerate() {
-            let mut visit = |cluster: Option<usize>, entries: SparseRow| {
+            let mut visit = |cluster: Option<usize>, [entries, weights]: [SparseRow; 2]| {
                 if let Some(cluster) = cluster {
                     if own_clusters.contains(&cluster) {
                         joined[cluster - own_clusters.start].push(entries);
@@ -82,14 +111,16 @@ impl SceneRows {
                     return;
                 }
                 let owner = first_subdomain(&entries, numbering);
-                if entries.iter().any(|(dof, _)| own.contains(&numbering.owner(*dof))) {
-                    equality.push(EqualityRow { owner, index: counts[owner], entries });
+                // Its weights may reach copies that the row itself does not.
+                if weights.iter().any(|(dof, _)| own.contains(&numbering.owner(*dof))) {
+                    equality.push(EqualityRow { owner, index: counts[owner], entries, weights });
                 }
                 counts[owner] += 1;
             };
             for node in 0..body.mesh.node_count() as u32 {
                 let joint = joints.cluster_of(number, node);
-                gluing_count += node_rows(body, node, copies.of(node), joint, &mut visit);
+                let scaled = !contact[number].contains(&node);
+                gluing_count += node_rows(body, node, (copies, scaled), joint, &mut visit);
             }
         }
         equality.sort_by_key(|row| row.owner);
@@ -113,25 +144,57 @@ fn along(first: usize, direction: &[f64; 3], factor: f64) -> impl Iterator<Item 
 fn node_rows(
     body: &Body,
     node: u32,
-    copies: &[usize],
+    (all, scaled): (&Copies, bool),
     joined: Option<usize>,
-    visit: &mut impl FnMut(Option<usize>, SparseRow),
+    visit: &mut impl FnMut(Option<usize>, [SparseRow; 2]),
 ) -> usize {
+    let copies = all.of(node);
     for direction in body.held(node) {
-        copies.iter().for_each(|&first| visit(None, along(first, direction, 1.0).collect()));
+        let row = |first: usize| along(first, direction, 1.0).collect::<SparseRow>();
+        copies.iter().for_each(|&first| visit(None, [row(first), row(first)]));
     }
     if copies.len() < 2 {
         return 0;
     }
     let free = body.free(node);
+    let rows = helmert(copies.len());
+    let weights = if scaled { weighted(&rows, all.stiffness_of(node)) } else { rows.clone() };
     for direction in &free {
-        for last in 1..copies.len() {
-            let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
-            let row = copies[..last].iter().flat_map(|&first| along(first, direction, scale));
-            visit(joined, row.chain(along(copies[last], direction, -(last as f64) * scale)).collect());
+        for (row, weights) in rows.iter().zip(&weights) {
+            let of = |factors: &[f64]| -> SparseRow {
+                copies.iter().zip(factors).flat_map(|(&first, &factor)| along(first, direction, factor)).collect()
+            };
+            visit(joined, [of(row), of(weights)]);
         }
     }
     if joined.is_none() { free.len() * (copies.len() - 1) } else { 0 }
+}
+
+/// The m − 1 Helmert rows of m copies: orthonormal, and each of sum zero.
+fn helmert(count: usize) -> Vec<Vec<f64>> {
+    let row = |last: usize| {
+        let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
+        let entry = |copy: usize| match copy.cmp(&last) {
+            Ordering::Less => scale,
+            Ordering::Equal => -(last as f64) * scale,
+            Ordering::Greater => 0.0,
+        };
+        (0..count).map(entry).collect()
+    };
+    (1..count).map(row).collect()
+}
+
+/// (H W Hᵀ)⁻¹ H W with the compliances W of the copies: the share of a jump that each of them takes is larger the softer
+/// its subdomain is there.
+fn weighted(rows: &[Vec<f64>], stiffness: &[f64]) -> Vec<Vec<f64>> {
+    let soft = DMatrix::from_fn(rows.len(), stiffness.len(), |i, copy| rows[i][copy] / stiffness[copy]);
+    let product = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+        soft.row(i).iter().zip(&rows[j]).map(|(soft, entry)| soft * entry).sum::<f64>()
+    });
+    match product.cholesky() {
+        Some(factor) => factor.solve(&soft).row_iter().map(|row| row.iter().copied().collect()).collect(),
+        None => rows.to_vec(),
+    }
 }
 
 /// The nodes of a contact node with their copies, shares and free directions: what its rows are made of at any shape.
