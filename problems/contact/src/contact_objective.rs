@@ -1,16 +1,16 @@
 //! The objective Θ of a contact problem: a measure of the states of control heights, and its first step.
 
+use crate::body::mesh::smallest_extent;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
 use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
 use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
-use crate::body::mesh::smallest_extent;
 use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
-    Answer, CompositeObjective, ConstraintKind, Cost, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError,
-    OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
+    Answer, CompositeObjective, ConstraintKind, Cost, CostGradient, Evaluation, Matrix, NonsmoothObjective,
+    OracleError, OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
 };
 
 /// Least first step over the smallest extent of the body. Ten times as much costs evaluations on flat bodies.
@@ -45,9 +45,7 @@ impl ContactCost {
     /// As [`PressureCost::new`] and [`FieldCost::new`].
     pub fn new(measure: Measure, problem: &ContactProblem) -> Result<Self, SceneError> {
         Ok(match measure {
-            Measure::Pressure(measure) => {
-                Self::Pressure(PressureCost::new(measure, problem)?.normalised_for(problem))
-            }
+            Measure::Pressure(measure) => Self::Pressure(PressureCost::new(measure, problem)?.normalised_for(problem)),
             Measure::LimitedPressure(measure, limit) => {
                 let cost = PressureCost::new(measure, problem)?.normalised_for(problem);
                 Self::Pressure(cost.limited(limit)?)

@@ -21,7 +21,8 @@ use crate::solvers::{Processes, SolverPlan};
 use nonsmooth::composite::{InactiveConstraints, Linearization};
 use nonsmooth::interruption::interrupted;
 use nonsmooth::{
-    Accuracy, Coderivative, CostGradient, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver, Vector,
+    Accuracy, Coderivative, CostGradient, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver,
+    Vector,
 };
 use std::sync::atomic::Ordering;
 

@@ -27,11 +27,8 @@ impl Deformation {
     /// The deformation of a body with given positions and displacements of its nodes, mm.
     pub fn of(mesh: &Mesh, positions: &[[f64; 3]], displacement: &[[f64; 3]]) -> Self {
         let lengths = displacement.iter().map(|u| u[0].hypot(u[1]).hypot(u[2]));
-        let mut found = Self {
-            displacement: lengths.fold(0.0, f64::max),
-            extent: smallest_extent(positions),
-            ..Self::NONE
-        };
+        let mut found =
+            Self { displacement: lengths.fold(0.0, f64::max), extent: smallest_extent(positions), ..Self::NONE };
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell_nodes(cell, positions);
             let gradient = nodes.gradient(&mesh.cell_values(cell, displacement));
@@ -69,8 +66,7 @@ mod tests {
         let columns = grid.column_count();
         let mesh = block(&grid, [1; 3], &vec![1.0; columns], &vec![6.0; columns]).expect("a block");
         // Compressed along x₃ by 3 %, stretched along x₁ by 2 %.
-        let displacement: Vec<[f64; 3]> =
-            mesh.nodes().iter().map(|[x1, _, x3]| [0.02 * x1, 0.0, -0.03 * x3]).collect();
+        let displacement: Vec<[f64; 3]> = mesh.nodes().iter().map(|[x1, _, x3]| [0.02 * x1, 0.0, -0.03 * x3]).collect();
         let found = Deformation::NONE.and(Deformation::of(&mesh, mesh.nodes(), &displacement));
         // Rounding of numbers near one.
         assert!((found.strain - 0.03).abs() < 1e-14 && found.rotation < 1e-14, "{found:?}");

@@ -104,8 +104,9 @@ pub fn warnings(
 /// Standard cells of a nearly incompressible material.
 fn locking(problem: &ContactProblem, found: &mut Vec<Warning>) {
     for body in problem.bodies.iter() {
-        let locks =
-            |material: &&Material| material.formulation() == Formulation::Standard && material.poisson_ratio() > MAX_STANDARD_RATIO;
+        let locks = |material: &&Material| {
+            material.formulation() == Formulation::Standard && material.poisson_ratio() > MAX_STANDARD_RATIO
+        };
         let Some(material) = body.materials().iter().find(locks) else { continue };
         let (ratio, name) = (material.poisson_ratio(), &body.name);
         let which = if name == "body" { "the body".to_owned() } else { format!("the {name} body") };
@@ -178,22 +179,36 @@ fn obstacle(
 struct Turns {
     /// Sum of the angles, radians.
     angle: f64,
-    /// Number of times that it turns the other way.
-    reversals: usize,
+    /// Number of times that it turns the other way, per length of the edge.
+    reversals: f64,
 }
 
 impl Turns {
     /// The turns between samples along an edge; none where the surface has no normal.
     fn along(ends: [[f64; 3]; 2], normal: impl Fn([f64; 3]) -> Option<[f64; 3]>) -> Option<Self> {
-        let share = |sample: usize| uneven(sample, SAMPLES) / SAMPLES as f64;
-        let at = |sample| std::array::from_fn(|axis| ends[0][axis] + share(sample) * (ends[1][axis] - ends[0][axis]));
-        let normals: Vec<[f64; 3]> = (0..=SAMPLES).map(|sample| normal(at(sample))).collect::<Option<_>>()?;
-        let normals: Vec<Vector3<f64>> = normals.into_iter().map(Vector3::from).collect();
-        let steps: Vec<Vector3<f64>> = normals.windows(2).map(|pair| pair[0].cross(&pair[1])).collect();
-        let angle = steps.iter().map(|step| step.norm()).sum();
+        // The line goes on by half an edge at either end: waves that reverse at nodes count as well.
+        let place = |sample: usize| uneven(sample, 2 * SAMPLES) / SAMPLES as f64 - 0.5;
+        let at = |share: f64| std::array::from_fn(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
+        let known = |sample| {
+            let share = place(sample);
+            let inside = (0.0..=1.0).contains(&share);
+            match normal(at(share)) {
+                None if inside => Err(()),
+                found => Ok(found.map(|normal| (share, inside, Vector3::from(normal)))),
+            }
+        };
+        let samples = (0..=2 * SAMPLES).map(known).collect::<Result<Vec<_>, ()>>().ok()?;
+        let samples: Vec<(f64, bool, Vector3<f64>)> = samples.into_iter().flatten().collect();
+        let steps: Vec<Vector3<f64>> = samples.windows(2).map(|pair| pair[0].2.cross(&pair[1].2)).collect();
+        let own = samples.windows(2).zip(&steps).filter(|(pair, _)| pair[0].1 && pair[1].1);
+        let (angles, shares) =
+            own.map(|(pair, step)| (step.norm(), pair[1].0 - pair[0].0)).unzip::<_, _, Vec<_>, Vec<_>>();
+        let angle = angles.iter().sum::<f64>() / shares.iter().sum::<f64>();
         let largest = steps.iter().map(|step| step.norm()).fold(0.0, f64::max);
         let clear: Vec<_> = steps.iter().filter(|step| step.norm() > FLAT.max(FLAT * largest)).collect();
         let reversals = clear.windows(2).filter(|pair| pair[0].dot(pair[1]) < 0.0).count();
+        let span = samples.last()?.0 - samples.first()?.0;
+        let reversals = reversals as f64 / span;
         Some(Self { angle, reversals })
     }
 }
@@ -202,8 +217,8 @@ impl Turns {
 /// reversals, and no waves; edges along which the surface does not turn do not count.
 fn edges_per_wave(turns: &[Turns]) -> f64 {
     let turning: Vec<&Turns> = turns.iter().filter(|turns| turns.angle > FLAT).collect();
-    let reversals: usize = turning.iter().map(|turns| turns.reversals).sum();
-    if reversals == 0 { f64::INFINITY } else { 2.0 * turning.len() as f64 / reversals as f64 }
+    let reversals: f64 = turning.iter().map(|turns| turns.reversals).sum();
+    if reversals == 0.0 { f64::INFINITY } else { 2.0 * turning.len() as f64 / reversals }
 }
 
 /// Places of samples between 0 and `last`, in steps: moved by up to half a step, so that no wave repeats itself.

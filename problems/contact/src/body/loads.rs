@@ -34,11 +34,7 @@ pub enum Traction {
     /// Along the axes over the position, MPa.
     Formula(Box<[Formula; 3]>),
     /// With a force, and a moment about a point.
-    Resultant {
-        force: [f64; 3],
-        moment: [f64; 3],
-        point: Option<[f64; 3]>,
-    },
+    Resultant { force: [f64; 3], moment: [f64; 3], point: Option<[f64; 3]> },
 }
 
 /// Constants of a traction t₀ + ω × (x − c).
@@ -212,11 +208,7 @@ fn solve<T: Scalar>(matrix: &[[T; 3]; 3], right: [T; 3]) -> [T; 3] {
 }
 
 /// Nodal forces of one face.
-fn face_forces<T: Scalar>(
-    traction: &Traction,
-    linear: Option<&Linear<T>>,
-    positions: &[[T; 3]],
-) -> Vec<[T; 3]> {
+fn face_forces<T: Scalar>(traction: &Traction, linear: Option<&Linear<T>>, positions: &[[T; 3]]) -> Vec<[T; 3]> {
     let mut forces = vec![[T::constant(0.0); 3]; positions.len()];
     integrate(positions, |point| {
         let force = traction.at(&point, linear);

@@ -13,13 +13,13 @@ pub(crate) mod loads;
 pub mod mesh;
 mod nodal_axes;
 mod piece;
+mod rigid_motions;
 pub(crate) mod shape_force;
 pub(crate) mod shape_sensitivity;
-mod rigid_motions;
 mod support;
 
 pub use body::{Body, Ends};
 pub(crate) use nodal_axes::NodalAxes;
+pub use piece::{Patterns, Piece, PiecePattern};
 pub use rigid_motions::{MOTIONS, Place};
 pub(crate) use support::{beyond, nodal_normals};
-pub use piece::{Patterns, Piece, PiecePattern};

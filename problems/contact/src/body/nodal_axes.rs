@@ -50,7 +50,8 @@ impl NodalAxes {
 
     /// A vector at a node along the axes, from its coordinates.
     pub fn turn_back_at(&self, node: usize, vector: [f64; 3]) -> [f64; 3] {
-        let along = |rows: [[f64; 3]; 3]| std::array::from_fn(|axis| (0..3).map(|row| rows[row][axis] * vector[row]).sum());
+        let along =
+            |rows: [[f64; 3]; 3]| std::array::from_fn(|axis| (0..3).map(|row| rows[row][axis] * vector[row]).sum());
         self.turned[node].map_or(vector, along)
     }
 

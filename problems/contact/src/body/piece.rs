@@ -88,11 +88,7 @@ impl Piece {
     }
 
     /// What of its nodes moves in rigid motions.
-    pub(crate) fn places<'a>(
-        &'a self,
-        body: &'a Body,
-        positions: &'a [[f64; 3]],
-    ) -> impl Iterator<Item = Place> + 'a {
+    pub(crate) fn places<'a>(&'a self, body: &'a Body, positions: &'a [[f64; 3]]) -> impl Iterator<Item = Place> + 'a {
         self.nodes.iter().map(|&node| body.place(node, positions))
     }
 

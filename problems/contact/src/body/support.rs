@@ -81,11 +81,7 @@ pub(crate) fn beyond(known: &[[f64; 3]], direction: [f64; 3]) -> Option<[f64; 3]
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] for faces that the mesh does not have, and for a support that holds nothing.
-pub fn held_directions(
-    body: &str,
-    mesh: &Mesh,
-    supports: &[Support],
-) -> Result<HashMap<u32, Directions>, SceneError> {
+pub fn held_directions(body: &str, mesh: &Mesh, supports: &[Support]) -> Result<HashMap<u32, Directions>, SceneError> {
     let mut held: HashMap<u32, Directions> = HashMap::new();
     for (index, support) in supports.iter().enumerate() {
         let field = format!("{body}.supports[{index}]");

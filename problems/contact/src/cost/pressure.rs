@@ -102,6 +102,11 @@ impl PressureCost {
     /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, wanted pressures are finite, and σ₀ is finite
     /// and > 0; [`SceneError::WrongCount`] unless there is one wanted pressure per contact node.
     pub fn new(measure: PressureMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
+        Self::over(measure, problem.start_rows().areas(), problem.areas_change())
+    }
+
+    /// The cost over contact nodes with these areas at the start, which may change with the shape.
+    fn over(measure: PressureMeasure, areas: Vec<f64>, areas_change: bool) -> Result<Self, SceneError> {
         match &measure {
             PressureMeasure::Peak => {}
             PressureMeasure::Norm { exponent, .. } => {
@@ -109,7 +114,7 @@ impl PressureCost {
                 SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
             }
             PressureMeasure::Deviation { wanted } => {
-                let (expected, found) = (problem.boundary.points.len(), wanted.len());
+                let (expected, found) = (areas.len(), wanted.len());
                 if expected != found {
                     return Err(SceneError::WrongCount { what: "wanted pressures".into(), expected, found });
                 }
@@ -126,13 +131,11 @@ impl PressureCost {
                 SceneError::require(valid, "objective.pressure", pressure, "a finite number > 0 (MPa)")?;
             }
         }
-        let areas = problem.start_rows().areas();
         let weights = match &measure {
             PressureMeasure::Norm { weight: NodeWeight::Area, .. } => areas.clone(),
             PressureMeasure::Norm { weight: NodeWeight::Nodes, .. } => vec![1.0; areas.len()],
             _ => vec![],
         };
-        let areas_change = problem.areas_change();
         Ok(Self { measure, is_root: false, weights, areas, areas_change, peak_limit: None })
     }
 

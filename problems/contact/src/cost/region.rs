@@ -32,8 +32,7 @@ const ROUNDING: f64 = 1e-12;
 
 impl Region {
     /// All of all bodies.
-    pub const WHOLE: Self =
-        Self { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None, volume: None };
+    pub const WHOLE: Self = Self { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None, volume: None };
 
     /// The cells of the named volume whose centres lie in the box at the start of the scene: no cell enters or leaves the
     /// region as the shape changes.

@@ -7,8 +7,8 @@
 //! that no contact node feels are left out: no force depends on them.
 
 use crate::direct::compliant_body::ContactBody;
-use crate::equilibrium::{ContactProblem, ContactRows};
 use crate::equilibrium::law::{self, Linearization};
+use crate::equilibrium::{ContactProblem, ContactRows};
 use crate::linear::dense::multiply;
 use crate::linear::vector::{add_scaled, dot};
 use faer::Mat;
@@ -184,7 +184,8 @@ impl CompliantContact {
                 let entries = rows.row(row);
                 let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
                 if square > 0.0 {
-                    *force = entries.iter().map(|(dof, value)| value * reaction[*dof]).sum::<f64>() / (square * self.load);
+                    *force =
+                        entries.iter().map(|(dof, value)| value * reaction[*dof]).sum::<f64>() / (square * self.load);
                 }
             }
         }

@@ -48,9 +48,8 @@ mod tests {
     /// A function of the displacements needs them for its value, its adjoint and the estimate of its error.
     #[test]
     fn a_state_solves_for_its_displacements_once() {
-        let mut scene = hertz().expect("the example");
-        (scene.mesh, scene.subdomains) = ([3; 3], [1; 3]);
-        let controls = vec![scene.start_height; scene.control_points.iter().product()];
+        let scene = hertz().expect("the example").with_bricks([3; 3], [1; 3]);
+        let controls = scene.shape.start();
         let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
         let solver = DirectSolver::new(Arc::clone(&problem)).expect("a pattern");
         let state = solver.solve(&controls, None, 1e-10).expect("a state").solution;

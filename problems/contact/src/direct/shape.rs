@@ -50,7 +50,11 @@ impl DirectSolver {
     }
 
     /// Forces on the contact dofs of every body, N, one column per field of velocities, and ∂B u − ∂g over the rows.
-    pub(super) fn shape_loads(&self, state: &DirectState, velocities: &Velocities<'_>) -> (Vec<Mat<f64>>, Vec<Vec<f64>>) {
+    pub(super) fn shape_loads(
+        &self,
+        state: &DirectState,
+        velocities: &Velocities<'_>,
+    ) -> (Vec<Mat<f64>>, Vec<Vec<f64>>) {
         let (problem, contact) = (&self.problem, &state.contact);
         let of_column = |column| contact.rows.changes(&problem.boundary, velocities, column);
         let changes: Vec<Vec<RowChange>> = (0..velocities.count()).map(of_column).collect();

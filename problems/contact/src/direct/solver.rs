@@ -8,8 +8,9 @@ use crate::direct::newton::{FLOOR_REACHED, Reached};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
-    Configuration, ContactBoundary, ContactForces, ContactPoint, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
-    Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents, ValueError, Work,
+    Configuration, ContactBoundary, ContactForces, ContactPoint, ContactProblem, ContactSolver, ContactState,
+    ContactWarmStart, Diagnosis, Kink, Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents,
+    ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
@@ -83,7 +84,10 @@ impl DirectSolver {
 
     /// Condenses all bodies of a shape; also the positions of its nodes, the load (zero at rest) and the number of
     /// factorisations.
-    fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Positions, f64, usize), ContactError> {
+    fn condense(
+        &self,
+        configuration: Configuration,
+    ) -> Result<(CompliantContact, Positions, f64, usize), ContactError> {
         Stage::Factorization.enter()?;
         let condense = |number: usize| -> Result<Arc<CompliantBody>, ContactError> {
             let positions = &configuration.positions[number];
@@ -368,7 +372,15 @@ impl DirectState {
                 forces[point.rows()].fill(0.0);
             }
         }
-        ContactForces::unpack(boundary, &contact.rows, &forces, &jumps, status, residuals, Kink::of(boundary, &arguments))
+        ContactForces::unpack(
+            boundary,
+            &contact.rows,
+            &forces,
+            &jumps,
+            status,
+            residuals,
+            Kink::of(boundary, &arguments),
+        )
     }
 }
 

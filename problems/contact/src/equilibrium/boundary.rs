@@ -3,8 +3,8 @@
 //! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without
 //! friction, and as many as there are free directions beside the normal (method.md section 3).
 
-use crate::body::{Body, beyond};
 use crate::body::mesh::CellFace;
+use crate::body::{Body, beyond};
 use crate::error::SceneError;
 use crate::names::nodes_of;
 use crate::scene::ContactScene;
@@ -76,7 +76,8 @@ impl ContactBoundary {
         let lower = &bodies[0];
         let mut friction_of: Vec<(BTreeSet<u32>, f64)> = Vec::new();
         for (name, friction) in &scene.friction_by_region {
-            friction_of.push((nodes_of("contact.friction_by_region", name, &lower.mesh)?.into_iter().collect(), *friction));
+            friction_of
+                .push((nodes_of("contact.friction_by_region", name, &lower.mesh)?.into_iter().collect(), *friction));
         }
         let has_friction = scene.has_friction();
         let nodes: BTreeSet<u32> = faces.iter().flat_map(|face| corners(lower, *face)).collect();

@@ -48,9 +48,9 @@ impl CellShapes {
 /// The edges of a cell between its corners.
 fn edges(kind: CellKind) -> &'static [[usize; 2]] {
     match kind {
-        CellKind::Hex8 => &[
-            [0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7],
-        ],
+        CellKind::Hex8 => {
+            &[[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]]
+        }
         CellKind::Tet10 => &[[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]],
     }
 }

@@ -115,7 +115,9 @@ impl RigidScene {
     /// The motions that supports and tied nodes of one body leave free.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
         let row = |point, force: [f64; 3]| {
-            let works = self.frames[body].motions(Place::Point(point)).map(|m| (0..3).map(|axis| m[axis] * force[axis]).sum::<f64>());
+            let works = self.frames[body]
+                .motions(Place::Point(point))
+                .map(|m| (0..3).map(|axis| m[axis] * force[axis]).sum::<f64>());
             DVector::from_row_slice(&works)
         };
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
@@ -311,7 +313,7 @@ fn nonnegative_fit(columns: &mut Vec<DVector<f64>>, weights: &mut Vec<f64>, load
 
 #[cfg(test)]
 mod tests {
-    use crate::body::mesh::Face;
+    use crate::body::mesh::BlockFace;
     use crate::equilibrium::ContactProblem;
     use crate::scene::{CounterSurface, Scene, Support, hertz, signorini};
     use crate::shape::ShapeBounds;
@@ -321,45 +323,48 @@ mod tests {
 
     /// Numbers of motions that supports leave free to the lower body and to all, and that contact leaves free as well.
     fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
-        (scene.size, scene.mesh, scene.friction) = ([1.0; 2], [4; 3], friction);
         (scene.lower.supports, scene.lower.loads) = (supports[0].to_vec(), Vec::new());
         if let Some(upper) = &mut scene.upper {
             (upper.body.supports, upper.body.loads, upper.top) = (supports[1].to_vec(), Vec::new(), 3.0 * height);
         }
-        scene.start_height = height;
         scene.counter_surface = CounterSurface::Plane { height };
-        scene.bounds = ShapeBounds { minimum_height: 0.5 * height, slope: 1.0, volume: [0.0, 2.0 * height] };
+        let scene = scene.with_friction(friction).with_bricks([4; 3], [2; 3]);
+        let scene = scene.with_blocks(|blocks| blocks.size = [1.0; 2]).with_heights(|heights| {
+            heights.start_height = height;
+            heights.bounds = ShapeBounds { minimum_height: 0.5 * height, slope: 1.0, volume: [0.0, 2.0 * height] };
+        });
         let problem = ContactProblem::new(scene).expect("a problem");
-        let rigid = problem.rigid_scene(&problem.blocks(&[height; 36]).expect("a block"));
-        let own: Vec<usize> = (0..rigid.bodies).map(|body| rigid.own_motions(body).len()).collect();
+        let positions = problem.positions(&[height; 36]).expect("a block");
+        let rigid = problem.rigid_scene(&positions, &problem.rows(&positions).expect("rows"));
+        let own: Vec<usize> = (0..rigid.frames.len()).map(|body| rigid.own_motions(body).len()).collect();
         [own[0], own.iter().sum(), rigid.analyse(&problem.boundary).expect("nothing is loaded").len()]
     }
 
     /// What supports and contact leave free does not depend on the proportions of the bodies.
     #[test]
     fn proportions_hide_no_restraint() {
-        let support = |face, held: [u8; 3]| Support { face, components: held.map(|held| held == 1) };
-        let foot = support(Face::Bottom, [1, 1, 1]);
-        let plane = support(Face::Bottom, [0, 0, 1]);
-        let (x1, x2) = (support(Face::X1Min, [1, 0, 0]), support(Face::X2Min, [0, 1, 0]));
-        let across = support(Face::X2Min, [1, 0, 0]);
+        let support = |face: BlockFace, held: [u8; 3]| Support::new(face, held.map(|held| held == 1));
+        let foot = support(BlockFace::Bottom, [1, 1, 1]);
+        let plane = support(BlockFace::Bottom, [0, 0, 1]);
+        let (x1, x2) = (support(BlockFace::X1Min, [1, 0, 0]), support(BlockFace::X2Min, [0, 1, 0]));
+        let across = support(BlockFace::X2Min, [1, 0, 0]);
         let one: [(&[Support], f64, [usize; 3]); 10] = [
-            (&[foot], 0.0, [0, 0, 0]),
-            (&[foot, x1], 0.0, [0, 0, 0]),
-            (&[x1, x2], 0.0, [1, 1, 0]),
-            (&[x1], 0.0, [3, 3, 1]),
-            (&[x1], 0.3, [3, 3, 0]),
-            (&[plane, across], 0.0, [2, 2, 2]),
-            (&[plane, across], 0.3, [2, 2, 0]),
-            (&[plane], 0.0, [3, 3, 3]),
+            (&[foot.clone()], 0.0, [0, 0, 0]),
+            (&[foot.clone(), x1.clone()], 0.0, [0, 0, 0]),
+            (&[x1.clone(), x2.clone()], 0.0, [1, 1, 0]),
+            (&[x1.clone()], 0.0, [3, 3, 1]),
+            (&[x1.clone()], 0.3, [3, 3, 0]),
+            (&[plane.clone(), across.clone()], 0.0, [2, 2, 2]),
+            (&[plane.clone(), across.clone()], 0.3, [2, 2, 0]),
+            (&[plane.clone()], 0.0, [3, 3, 3]),
             (&[], 0.0, [6, 6, 3]),
             (&[], 0.3, [6, 6, 0]),
         ];
         let two: [Stack<'_>; 5] = [
-            ([&[foot], &[]], 0.0, [0, 6, 3]),
-            ([&[foot], &[]], 0.3, [0, 6, 0]),
-            ([&[x1, plane], &[x1]], 0.0, [1, 4, 2]),
-            ([&[x1, plane], &[x1]], 0.3, [1, 4, 1]),
+            ([&[foot.clone()], &[]], 0.0, [0, 6, 3]),
+            ([&[foot.clone()], &[]], 0.3, [0, 6, 0]),
+            ([&[x1.clone(), plane.clone()], &[x1.clone()]], 0.0, [1, 4, 2]),
+            ([&[x1.clone(), plane.clone()], &[x1.clone()]], 0.3, [1, 4, 1]),
             ([&[], &[]], 0.3, [6, 12, 6]),
         ];
         for height in [1e-7, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e7] {

@@ -1,11 +1,11 @@
 //! A scene made discrete: bodies, contact boundary, the map from controls to node positions. What all solvers share.
 
+use crate::body::Body;
 use crate::body::elasticity::{Formulation, Material};
 use crate::body::loads::nodal_forces;
 use crate::body::mesh::{BlockFace, CellFace, Mesh, block};
-use crate::body::Body;
-use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::cell_shapes::CellShapes;
+use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactRows};
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
@@ -253,7 +253,8 @@ fn bodies(scene: &Scene) -> Result<(Vec<Body>, Option<u32>), SceneError> {
             let mesh = Arc::clone(&geometry.mesh);
             let contact = find_face("contact.face", &scene.contact.face, &mesh)?.to_vec();
             let body = Body::new("body", &scene.lower, mesh, &contact, geometry.piece_count())?;
-            let inverted = |error: ContactError| SceneError::out_of_range("body.mesh", error, "cells of positive volume");
+            let inverted =
+                |error: ContactError| SceneError::out_of_range("body.mesh", error, "cells of positive volume");
             check_cells(&body, body.mesh.nodes()).map_err(inverted)?;
             Ok((vec![body], None))
         }
@@ -295,11 +296,7 @@ fn shape(scene: &Scene, lower: &Body) -> Result<(ShapeMap, AdmissibleSet), Scene
     }
 }
 
-fn heights_of(
-    scene: &Scene,
-    heights: &HeightShape,
-    blocks: &Blocks,
-) -> Result<(ShapeMap, AdmissibleSet), SceneError> {
+fn heights_of(scene: &Scene, heights: &HeightShape, blocks: &Blocks) -> Result<(ShapeMap, AdmissibleSet), SceneError> {
     let (grid, surface) = (blocks.grid(), heights.surface()?);
     let counter = &scene.counter_surface;
     let height = |[x1, x2]: [f64; 2]| if counter.has_heights() { counter.height(x1, x2) } else { f64::INFINITY };

@@ -120,7 +120,11 @@ impl ContactGeometry {
             let foot = match point.sides.get(1) {
                 Some(partner) => paired(x, positions[partner.body][partner.node as usize]),
                 None if self.normal == NormalKind::X3 => self.counter.foot_along_x3(x),
-                None => self.counter.foot(x).map_err(|reason| ContactError::NoFoot { node: point.node, place: x, reason })?,
+                None => self.counter.foot(x).map_err(|reason| ContactError::NoFoot {
+                    node: point.node,
+                    place: x,
+                    reason,
+                })?,
             };
             let Foot { normal, gap, gap_slope, normal_slope } = foot;
             let directions = directions(&point.free, normal, point.row_count());
@@ -158,7 +162,8 @@ impl ContactGeometry {
         for &face in &self.faces {
             let nodes: Vec<u32> = body.mesh.face_nodes(face).collect();
             let weight = |node: &u32| weights.get(node).copied().unwrap_or(0.0);
-            let mut x: Vec<[Dual; 3]> = nodes.iter().map(|&node| positions[node as usize].map(Dual::constant)).collect();
+            let mut x: Vec<[Dual; 3]> =
+                nodes.iter().map(|&node| positions[node as usize].map(Dual::constant)).collect();
             for index in (0..nodes.len()).filter(|&index| moves(nodes[index])) {
                 for axis in 0..3 {
                     x[index][axis].derivative = 1.0;

@@ -134,10 +134,33 @@ impl<S> ContactState<S> {
 
     /// Replaces the solver's own part of the solution and keeps all else.
     pub fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
-        let Self { forces, rows, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications } =
-            self;
+        let Self {
+            forces,
+            rows,
+            solution,
+            bodies,
+            load,
+            solver,
+            reason,
+            contraction,
+            stages,
+            work,
+            adjoint_applications,
+        } = self;
         let solution = change(solution);
-        ContactState { forces, rows, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications }
+        ContactState {
+            forces,
+            rows,
+            solution,
+            bodies,
+            load,
+            solver,
+            reason,
+            contraction,
+            stages,
+            work,
+            adjoint_applications,
+        }
     }
 }
 

@@ -69,9 +69,8 @@ impl ContactFields {
 
     /// Lets the fields hold the sensitivities of a function of the positions of all nodes.
     pub fn set_sensitivity(&mut self, positions: &[[f64; 3]]) {
-        let along = |(&node, normal): (&u32, &[f64; 3])| {
-            (0..3).map(|axis| normal[axis] * positions[node as usize][axis]).sum()
-        };
+        let along =
+            |(&node, normal): (&u32, &[f64; 3])| (0..3).map(|axis| normal[axis] * positions[node as usize][axis]).sum();
         self.sensitivity = Some(self.nodes.iter().zip(&self.normal).map(along).collect());
     }
 }

@@ -248,7 +248,10 @@ impl Scene {
             let (field, value) = (format!("{name}.{part}: face"), format!("\"{face}\""));
             SceneError::require(face != contact.name(), field, value, "any face but the contact boundary")
         };
-        body.loads.iter().filter_map(|load| load.place.as_deref()).try_for_each(|face| not_on_contact("loads", face))?;
+        body.loads
+            .iter()
+            .filter_map(|load| load.place.as_deref())
+            .try_for_each(|face| not_on_contact("loads", face))?;
         body.supports.iter().try_for_each(|support| not_on_contact("supports", &support.face))?;
         let vertical = |face: &str| ![BlockFace::Bottom, BlockFace::Top].iter().any(|other| other.name() == face);
         let holds = |held: &Held| matches!(held, Held::Components([_, _, true]));

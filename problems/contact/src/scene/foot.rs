@@ -95,9 +95,8 @@ impl CounterSurface {
             &Self::Sphere { radius, centre, .. } => {
                 let r = [x1 - centre[0], x2 - centre[1]];
                 let depth = (radius * radius - r[0] * r[0] - r[1] * r[1]).sqrt();
-                let second = |i: usize, j: usize| {
-                    f64::from(u8::from(i == j)) / depth + r[i] * r[j] / (depth * depth * depth)
-                };
+                let second =
+                    |i: usize, j: usize| f64::from(u8::from(i == j)) / depth + r[i] * r[j] / (depth * depth * depth);
                 Jet { height, slopes: r.map(|r| r / depth), second: [0, 1].map(|i| [0, 1].map(|j| second(i, j))) }
             }
             Self::Grid(grid) => grid.jet(x1, x2),
@@ -203,12 +202,8 @@ mod tests {
 
     fn surfaces() -> Vec<CounterSurface> {
         let ball = |side| CounterSurface::Ball { centre: [4.0, -3.0, 40.0], radius: 30.0, side };
-        let bore = |side| CounterSurface::Cylinder {
-            point: [1.0, 2.0, 33.0],
-            axis: [3.0, 1.0, 0.5],
-            radius: 20.0,
-            side,
-        };
+        let bore =
+            |side| CounterSurface::Cylinder { point: [1.0, 2.0, 33.0], axis: [3.0, 1.0, 0.5], radius: 20.0, side };
         vec![
             CounterSurface::Plane { height: 12.0 },
             CounterSurface::Waves { base: 12.0, first: 0.5, second: -0.8, period: 25.0 },

@@ -3,9 +3,7 @@
 use crate::body::elasticity::Material;
 use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
-use crate::scene::{
-    Blocks, BodyScene, ContactScene, CounterSurface, Geometry, Load, Scene, Support, UpperBody,
-};
+use crate::scene::{Blocks, BodyScene, ContactScene, CounterSurface, Geometry, Load, Scene, Support, UpperBody};
 use crate::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 
 const ALONG_X1: [bool; 3] = [true, false, false];

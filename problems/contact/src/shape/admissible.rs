@@ -150,8 +150,8 @@ impl AdmissibleSet {
     fn expressions(&self, controls: &Vector) -> Vec<(String, f64, f64, f64)> {
         let set = &self.polyhedron;
         let products = set.rows() * controls;
-        let bounds = (0..controls.len())
-            .map(|i| (self.control_names[i].clone(), controls[i], set.lower()[i], set.upper()[i]));
+        let bounds =
+            (0..controls.len()).map(|i| (self.control_names[i].clone(), controls[i], set.lower()[i], set.upper()[i]));
         let rows = (0..products.len())
             .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
         bounds.chain(rows).collect()

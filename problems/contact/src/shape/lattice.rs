@@ -183,7 +183,12 @@ impl LatticeShape {
         if let Some([least, largest]) = self.volume {
             let valid = 0.0 <= least && least <= largest && largest.is_finite() && largest > 0.0;
             let value = format!("[{least}, {largest}]");
-            SceneError::require(valid, "lattice.volume", value, "the smaller number first, over the volume at the start")?;
+            SceneError::require(
+                valid,
+                "lattice.volume",
+                value,
+                "the smaller number first, over the volume at the start",
+            )?;
         }
         let [least, largest] = self.displacement;
         let value = format!("[{least}, {largest}]");
@@ -346,9 +351,9 @@ impl LatticeShape {
             count => index[axis] as f64 / (count - 1) as f64,
         };
         match self.coordinates {
-            Coordinates::Cartesian { corner, edges } => std::array::from_fn(|k| {
-                corner[k] + (0..3).map(|axis| xi(axis) * edges[axis][k]).sum::<f64>()
-            }),
+            Coordinates::Cartesian { corner, edges } => {
+                std::array::from_fn(|k| corner[k] + (0..3).map(|axis| xi(axis) * edges[axis][k]).sum::<f64>())
+            }
             Coordinates::Cylindrical { point, axis, zero, ranges } => {
                 let axis = unit(axis);
                 let second = unit(cross(axis, zero));

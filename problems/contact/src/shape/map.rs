@@ -16,11 +16,7 @@ pub struct ShapeMap {
 
 impl ShapeMap {
     /// The map with given positions for controls 0, mm, and rows of N as (control, value), three per node.
-    pub(crate) fn new(
-        base: Vec<[f64; 3]>,
-        controls: usize,
-        rows: impl IntoIterator<Item = Vec<(usize, f64)>>,
-    ) -> Self {
+    pub(crate) fn new(base: Vec<[f64; 3]>, controls: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
         let matrix = Csr::from_rows(controls, rows);
         debug_assert_eq!(matrix.row_count(), 3 * base.len());
         Self { base, matrix }

@@ -3,8 +3,8 @@
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
-    Configuration, ContactForces, ContactProblem, ContactRows, ContactState, ContactWarmStart, Failed, Kink, Residuals, Stage,
-    StageSeconds, Work,
+    Configuration, ContactForces, ContactProblem, ContactRows, ContactState, ContactWarmStart, Failed, Kink, Residuals,
+    Stage, StageSeconds, Work,
 };
 use crate::error::ContactError;
 use crate::solvers::SolverKind;

@@ -87,7 +87,10 @@ impl CellNodes<f64> {
     /// The smallest det(∂x/∂ξ) at the integration points, mm³ from the reference cell; not finite for bad positions.
     pub fn smallest_determinant(&self) -> f64 {
         let smallest = |volumes: &mut dyn Iterator<Item = f64>| {
-            volumes.fold(f64::INFINITY, |smallest, volume| if volume < smallest || volume.is_nan() { volume } else { smallest })
+            volumes.fold(
+                f64::INFINITY,
+                |smallest, volume| if volume < smallest || volume.is_nan() { volume } else { smallest },
+            )
         };
         match self {
             Self::Hex8(nodes) => smallest(&mut hex8::gauss_points(nodes).iter().map(|point| point.volume)),
@@ -191,11 +194,13 @@ impl CellNodes<f64> {
     pub fn scaled_jacobian(&self) -> f64 {
         let corner = |nodes: &[[f64; 3]], at: usize, ends: [usize; 3]| {
             let edges = ends.map(|end| nalgebra::Vector3::from_fn(|i, _| nodes[end][i] - nodes[at][i]));
-            nalgebra::Matrix3::from_columns(&edges).determinant() / edges.iter().map(|edge| edge.norm()).product::<f64>()
+            nalgebra::Matrix3::from_columns(&edges).determinant()
+                / edges.iter().map(|edge| edge.norm()).product::<f64>()
         };
         match self {
             Self::Hex8(nodes) => {
-                let neighbours = [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
+                let neighbours =
+                    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
                 (0..8).map(|at| corner(nodes, at, neighbours[at])).fold(f64::INFINITY, f64::min)
             }
             Self::Tet10(nodes) => {

@@ -6,11 +6,36 @@
 //! ∂/∂x_aᵛ:  κ (D′(u) D(q) + D(u) D′(q) − D(u) D(q) V′/V)/V,   D′(u) = Σ det [ ∇·u G_aᵥ − Σ ∂_a u_i G_iᵥ ],   V′ = Σ det G_aᵥ
 //! ```
 //! One constraint per cell instead of one per integration point: nearly incompressible cells keep their bending modes.
-//! The deviatoric part is integrated fully, so no spurious mode appears.
+//! On hexahedra, the rest is the deviatoric part, integrated fully. The four points of a tetrahedron see too few modes by
+//! it alone: there, the mean takes λ tr(ε) only (κ becomes λ), and 2μ ε remains at the points.
 
 use crate::body::elasticity::gauss::GaussPoint;
 use crate::body::elasticity::stiffness::lower_start;
+use crate::body::elasticity::{Formulation, Material};
 use crate::scalar::Scalar;
+
+/// Moduli of the change of volume, MPa.
+#[derive(Debug, Clone, Copy)]
+pub struct VolumeModuli {
+    /// λ at the integration points.
+    pub pointwise: f64,
+    /// That of the mean dilatation, if there is one.
+    pub mean: Option<f64>,
+}
+
+impl VolumeModuli {
+    /// Those of a cell with N nodes.
+    pub fn of<const N: usize>(material: &Material) -> Self {
+        let (lambda, mu) = (material.lame_lambda(), material.shear_modulus());
+        match material.formulation() {
+            Formulation::Standard => Self { pointwise: lambda, mean: None },
+            Formulation::MeanDilatation if N == 8 => {
+                Self { pointwise: -2.0 / 3.0 * mu, mean: Some(material.bulk_modulus()) }
+            }
+            Formulation::MeanDilatation => Self { pointwise: 0.0, mean: Some(lambda) },
+        }
+    }
+}
 
 /// D(u)/V: the mean over the cell of its relative change of volume.
 pub fn mean<const N: usize>(points: &[GaussPoint<f64, N>], u: &[f64]) -> f64 {

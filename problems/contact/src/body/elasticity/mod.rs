@@ -14,9 +14,9 @@ mod material;
 mod mean_dilatation;
 pub mod stiffness;
 pub mod stress;
-pub mod tet10;
 #[cfg(test)]
 mod tests;
+pub mod tet10;
 
 pub use cell::{CellNodes, StressedCell};
 pub use gauss::GaussPoint;

@@ -5,23 +5,15 @@
 //! ∂(qᵀK u)/∂x_aᵛ = Σ det [ (σ(u):∇q) G_aᵥ − Σ σ(u)_ji ∂_a q_j G_iᵥ − Σ σ(q)_ji ∂_a u_j G_iᵥ ]      method.md (5.2)
 //! ∂(K u)[x′]     = Σ det [ div x′ σ(u) − σ(u) (∇x′)ᵀ − σ(∇u ∇x′) ] ∇N
 //! ```
-//! With [`Formulation::MeanDilatation`] the integration points carry the deviatoric part only (λ = −⅔μ) and
-//! `mean_dilatation` adds the volumetric one.
+//! With a mean dilatation, λ at the integration points is that of [`VolumeModuli`], and `mean_dilatation` adds its part.
 
+use crate::body::elasticity::Material;
 use crate::body::elasticity::gauss::GaussPoint;
-use crate::body::elasticity::{Formulation, Material, mean_dilatation};
+use crate::body::elasticity::mean_dilatation::{self, VolumeModuli};
 use crate::scalar::Scalar;
 
 /// A displacement gradient `[j][i]` = ∂u_j/∂x_i, or a stress.
 pub type Tensor = [[f64; 3]; 3];
-
-/// λ at the integration points: of the whole material, or of its deviatoric part.
-pub(crate) fn pointwise_lambda(material: &Material) -> f64 {
-    match material.formulation() {
-        Formulation::Standard => material.lame_lambda(),
-        Formulation::MeanDilatation => -2.0 / 3.0 * material.shear_modulus(),
-    }
-}
 
 /// Entries of the lower triangle of a symmetric matrix by rows, of which `row` are before row `row`.
 pub const fn lower_start(row: usize) -> usize {
@@ -30,7 +22,8 @@ pub const fn lower_start(row: usize) -> usize {
 
 /// Stiffness matrix of a cell as its lower triangle by rows, N/mm; dof 3v + component.
 pub fn stiffness<T: Scalar, const N: usize>(points: &[GaussPoint<T, N>], material: &Material) -> Vec<T> {
-    let (lambda, mu) = (T::constant(pointwise_lambda(material)), T::constant(material.shear_modulus()));
+    let moduli = VolumeModuli::of::<N>(material);
+    let (lambda, mu) = (T::constant(moduli.pointwise), T::constant(material.shear_modulus()));
     let mut matrix = vec![T::constant(0.0); lower_start(3 * N)];
     for point in points {
         let g = &point.gradients;
@@ -47,8 +40,8 @@ pub fn stiffness<T: Scalar, const N: usize>(points: &[GaussPoint<T, N>], materia
             }
         }
     }
-    if material.formulation() == Formulation::MeanDilatation {
-        mean_dilatation::add_stiffness(points, material.bulk_modulus(), &mut matrix);
+    if let Some(modulus) = moduli.mean {
+        mean_dilatation::add_stiffness(points, modulus, &mut matrix);
     }
     matrix
 }
@@ -61,7 +54,8 @@ pub fn position_derivative<const N: usize>(
     q: &[f64],
 ) -> [[f64; 3]; N] {
     let mut result = [[0.0; 3]; N];
-    let lame = (pointwise_lambda(material), material.shear_modulus());
+    let moduli = VolumeModuli::of::<N>(material);
+    let lame = (moduli.pointwise, material.shear_modulus());
     for point in points {
         let (grad_u, grad_q) = (point.gradient(u), point.gradient(q));
         let (stress_u, stress_q) = (stress(&grad_u, lame), stress(&grad_q, lame));
@@ -78,8 +72,8 @@ pub fn position_derivative<const N: usize>(
             }
         }
     }
-    if material.formulation() == Formulation::MeanDilatation {
-        mean_dilatation::add_position_derivative(points, material.bulk_modulus(), u, q, &mut result);
+    if let Some(modulus) = moduli.mean {
+        mean_dilatation::add_position_derivative(points, modulus, u, q, &mut result);
     }
     result
 }
@@ -93,14 +87,14 @@ pub fn add_moved_forces<const N: usize>(
     velocities: &[f64],
     forces: &mut [f64],
 ) {
-    let lame = (pointwise_lambda(material), material.shear_modulus());
+    let moduli = VolumeModuli::of::<N>(material);
+    let lame = (moduli.pointwise, material.shear_modulus());
     for point in points {
         let (grad_u, grad_v) = (point.gradient(u), point.gradient(velocities));
         let stress_u = stress(&grad_u, lame);
         let dilation = grad_v[0][0] + grad_v[1][1] + grad_v[2][2];
-        let transported: Tensor = std::array::from_fn(|i| {
-            std::array::from_fn(|j| (0..3).map(|a| grad_u[i][a] * grad_v[a][j]).sum::<f64>())
-        });
+        let transported: Tensor =
+            std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|a| grad_u[i][a] * grad_v[a][j]).sum::<f64>()));
         let moved = stress(&transported, lame);
         let flux: Tensor = std::array::from_fn(|k| {
             std::array::from_fn(|a| {
@@ -114,8 +108,8 @@ pub fn add_moved_forces<const N: usize>(
             }
         }
     }
-    if material.formulation() == Formulation::MeanDilatation {
-        mean_dilatation::add_moved_forces(points, material.bulk_modulus(), u, velocities, forces);
+    if let Some(modulus) = moduli.mean {
+        mean_dilatation::add_moved_forces(points, modulus, u, velocities, forces);
     }
 }
 

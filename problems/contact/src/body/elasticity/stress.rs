@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! standard:         σ = λ tr(ε) I + 2μ ε                          at the point
-//! mean dilatation:  σ = κ θ̄ I + 2μ (ε − ⅓ tr(ε) I),  θ̄ = D(u)/V  over the cell      (mean_dilatation.rs)
+//! mean dilatation:  σ = κ θ̄ I + 2μ (ε − ⅓ tr(ε) I),  θ̄ = D(u)/V  over the cell, in hexahedra
+//!                   σ = λ θ̄ I + 2μ ε                  in tetrahedra                        (mean_dilatation.rs)
 //! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )              [Mises1913]
 //! s = 2μ dev ε,   P = ∂σ_vM/∂σ = 3/2 s/σ_vM:   ∂σ_vM/∂u_vi = 2μ Σ_j P_ij G_jᵥ,   ∂σ_vM/∂x_aᵛ = −2μ Σ_ij P_ij ∂_a u_i G_jᵥ
 //! ```
@@ -10,9 +11,10 @@
 //! centre of a trilinear brick the stress converges one order faster than elsewhere \[Barlow1976\], so that is where it
 //! is taken for pictures. Tensors are six numbers in the order 11, 22, 33, 12, 23, 13.
 
+use crate::body::elasticity::Material;
 use crate::body::elasticity::gauss::GaussPoint;
-use crate::body::elasticity::stiffness::{Tensor, pointwise_lambda, stress};
-use crate::body::elasticity::{Formulation, Material, mean_dilatation};
+use crate::body::elasticity::mean_dilatation::{self, VolumeModuli};
+use crate::body::elasticity::stiffness::{Tensor, stress};
 
 /// A symmetric tensor as its components 11, 22, 33, 12, 23, 13.
 pub type SymmetricTensor = [f64; 6];
@@ -28,11 +30,9 @@ pub fn stress_at<const N: usize>(
     material: &Material,
     u: &[f64],
 ) -> SymmetricTensor {
-    let full = stress(&point.gradient(u), (pointwise_lambda(material), material.shear_modulus()));
-    let mean_pressure = match material.formulation() {
-        Formulation::Standard => 0.0,
-        Formulation::MeanDilatation => material.bulk_modulus() * mean_dilatation::mean(points, u),
-    };
+    let moduli = VolumeModuli::of::<N>(material);
+    let full = stress(&point.gradient(u), (moduli.pointwise, material.shear_modulus()));
+    let mean_pressure = moduli.mean.map_or(0.0, |modulus| modulus * mean_dilatation::mean(points, u));
     COMPONENTS.map(|(row, column)| full[row][column] + if row == column { mean_pressure } else { 0.0 })
 }
 

@@ -78,12 +78,11 @@ pub fn block(grid: &Grid, subdomains: [usize; 3], lower: &[f64], upper: &[f64]) 
     };
     let nodes = points(grid.nodes()).map(position).collect();
     let bricks = || points(grid.cells);
-    let node = |brick: [usize; 3], corner: [usize; 3]| grid.node(std::array::from_fn(|axis| brick[axis] + corner[axis]));
+    let node =
+        |brick: [usize; 3], corner: [usize; 3]| grid.node(std::array::from_fn(|axis| brick[axis] + corner[axis]));
     let corners = |brick| (CellKind::Hex8, CORNERS.map(|corner| node(brick, corner)));
     let boxes: [usize; 3] = std::array::from_fn(|axis| grid.cells[axis] / subdomains[axis]);
-    let piece = |brick: [usize; 3]| {
-        index(subdomains, std::array::from_fn(|axis| brick[axis] / boxes[axis])) as u32
-    };
+    let piece = |brick: [usize; 3]| index(subdomains, std::array::from_fn(|axis| brick[axis] / boxes[axis])) as u32;
     let mut mesh = Mesh::new(nodes, bricks().map(corners))?.with_pieces(bricks().map(piece).collect())?;
     for name in BlockFace::ALL {
         let (axis, far, face) = name.side();

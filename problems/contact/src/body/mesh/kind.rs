@@ -13,8 +13,7 @@ pub enum CellKind {
 }
 
 /// Faces of a hexahedron, counterclockwise seen from outside.
-const HEX8: [&[usize]; 6] =
-    [&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
+const HEX8: [&[usize]; 6] = [&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
 /// Faces of a tetrahedron, counterclockwise seen from outside: vertices, then the middles between them.
 const TET10: [&[usize]; 4] = [&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 9, 7], &[1, 2, 3, 5, 8, 9], &[0, 3, 2, 7, 8, 6]];
 

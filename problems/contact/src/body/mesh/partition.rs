@@ -42,9 +42,7 @@ fn halve(centres: &[[f64; 3]], cells: &mut [u32], count: usize, pieces: &mut Vec
         return;
     }
     let axis = longest_axis(cells.iter().map(|&cell| centres[cell as usize]));
-    cells.sort_unstable_by(|&a, &b| {
-        centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))
-    });
+    cells.sort_unstable_by(|&a, &b| centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b)));
     let left = count / 2;
     let (first, second) = cells.split_at_mut(cells.len() * left / count);
     halve(centres, first, left, pieces);

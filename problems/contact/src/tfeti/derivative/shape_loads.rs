@@ -5,9 +5,9 @@
 //! ```
 //! The adjoint counterpart is [`shape_derivative`](super::shape_derivative()).
 
+use crate::body::MOTIONS;
 use crate::body::shape_force::shape_forces;
 use crate::equilibrium::RowChange;
-use crate::body::MOTIONS;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
 use crate::linear::real::Real;
 use crate::shape::Velocities;

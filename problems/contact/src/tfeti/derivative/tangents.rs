@@ -9,8 +9,8 @@
 //! of rigid parts that would cancel. Directions are in single precision, and so is all else where the tolerance allows
 //! it; otherwise the residual is computed afresh in double precision after every cycle.
 
-use crate::equilibrium::{RowChange, Tangents};
 use crate::equilibrium::law::{Friction, Linearization};
+use crate::equilibrium::{RowChange, Tangents};
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
 use crate::linear::entry::{Entry, LANES, Row};

@@ -8,8 +8,8 @@
 //! ```
 //! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is a spring in series.
 
-use crate::equilibrium::{ContactBoundary, ContactPoint};
 use crate::equilibrium::law::{Friction, Linearization};
+use crate::equilibrium::{ContactBoundary, ContactPoint};
 use crate::linear::entry::Entry;
 use crate::tfeti::torn::RowVector;
 

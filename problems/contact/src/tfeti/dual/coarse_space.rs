@@ -196,14 +196,12 @@ mod tests {
 
     /// The coarse space of a flat scene, with a motion of all subdomains grounded if asked for.
     fn coarse_space(scene: Scene, subdomains: [usize; 3], ground: bool) -> CoarseSpace {
-        let scene = Scene { mesh: [6; 3], subdomains, ..scene };
-        let problem = Arc::new(ContactProblem::new(scene).expect("a preset"));
+        let problem = Arc::new(ContactProblem::new(scene.with_bricks([6; 3], subdomains)).expect("a preset"));
         let options = TornOptions { preconditioner: PreconditionerKind::None, ..TornOptions::default() };
         let solver = TotalFeti::new(Arc::clone(&problem), options).expect("a torn scene");
-        let surface = problem.scene.spline_surface().expect("a preset");
-        let controls = vec![95.0; surface.control_count()];
+        let controls = vec![95.0; problem.scene.control_count()];
         let configuration = Configuration::new(&problem, &controls).expect("held bodies");
-        let system = solver.model().factorize(&configuration.blocks).expect("factors");
+        let system = solver.model().factorize(&configuration).expect("factors");
         let amplitudes = MOTIONS * system.parts.len();
         let motion: Vec<f64> = (0..amplitudes).map(|index| 0.3 * (index as f64).sin()).collect();
         CoarseSpace::new(solver.model(), &system, if ground { vec![motion] } else { vec![] }).expect("a coarse space")

@@ -5,9 +5,9 @@
 //! residual:  (c w_E,  λ − Π(λ + c w)),     G λ = e in every iterate
 //! ```
 
-use crate::equilibrium::{ContactBoundary, ContactRows};
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::{Friction, Linearization};
+use crate::equilibrium::{ContactBoundary, ContactRows};
 use crate::error::ContactError;
 use crate::linear::sums::Sums;
 use crate::linear::vector::{add_scaled, norm};

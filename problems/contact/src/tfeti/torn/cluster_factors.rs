@@ -232,7 +232,7 @@ mod tests {
     use crate::tfeti::torn::scene_rows;
 
     /// Two bricks side by side along the first axis, glued at some of the four nodes between them.
-    fn two_bricks(glued: &[usize]) -> (ClusterRows, Vec<Vec<[f64; 3]>>) {
+    fn two_bricks(glued: &[usize]) -> (ClusterRows, Vec<Vec<Place>>) {
         let corner = |node: usize| [node & 1, (node >> 1) & 1, node >> 2].map(|index| index as f64);
         let first: Vec<[f64; 3]> = (0..8).map(corner).collect();
         let second: Vec<[f64; 3]> = first.iter().map(|[x, y, z]| [x + 1.0, *y, *z]).collect();
@@ -240,7 +240,8 @@ mod tests {
         let row =
             |node: usize| (0..3).map(move |c| vec![(3 * (2 * node + 1) + c, half), (24 + 3 * 2 * node + c, -half)]);
         let rows: Vec<scene_rows::SparseRow> = glued.iter().flat_map(|&node| row(node)).collect();
-        (ClusterRows::new(&rows, 0..48, 24), vec![first, second])
+        let places = |points: Vec<[f64; 3]>| points.into_iter().map(Place::Point).collect();
+        (ClusterRows::new(&rows, &[0, 24, 48]), vec![places(first), places(second)])
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! The torn scene: what is fixed for a run, and the factored system of a shape. A process holds its subdomains only.
 
+use crate::body::MOTIONS;
 use crate::body::loads::piece_loads;
 use crate::body::{Body, Piece, Place};
 use crate::communication::Communication;
-use crate::body::MOTIONS;
 use crate::equilibrium::{Configuration, ContactProblem, ContactRows};
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
@@ -102,8 +102,7 @@ impl TornModel {
         let coarse = Arc::new(CoarsePattern::new(&constraints, &interface, &numbering, &clusters, &centres)?);
         let own = distribution.owned();
         let first = numbering.starts()[own.start];
-        let starts: Arc<[usize]> =
-            numbering.starts()[own.start..=own.end].iter().map(|start| start - first).collect();
+        let starts: Arc<[usize]> = numbering.starts()[own.start..=own.end].iter().map(|start| start - first).collect();
         let own_clusters = clusters.owned();
         let cluster_starts: Arc<[usize]> = numbering.cluster_starts()[own_clusters.start..=own_clusters.end]
             .iter()
@@ -164,7 +163,8 @@ impl TornModel {
         let count = |body: &FactoredBody| body.parts.iter().map(|(_, part)| part.factorizations()).sum::<usize>();
         let mut factored = count(&lower);
         if self.fixed.get().is_none() {
-            let bodies = (1..self.problem.bodies.len()).map(|body| self.factorize_body(body, &configuration.positions[body]));
+            let bodies =
+                (1..self.problem.bodies.len()).map(|body| self.factorize_body(body, &configuration.positions[body]));
             let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
             factored += bodies.iter().map(count).sum::<usize>();
             // Another thread may have been first; its factors are the same.
@@ -205,8 +205,8 @@ impl TornModel {
         };
         let own = self.subdomains.par_iter().enumerate().filter(|(_, subdomain)| subdomain.body == body);
         let parts: Result<Vec<(usize, Arc<SubdomainFactors>)>, ContactError> = own.map(factor).collect();
-        let factored = parts
-            .and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, positions, &parts)?, parts }));
+        let factored =
+            parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, positions, &parts)?, parts }));
         self.distribution.agreed(factored)
     }
 
@@ -303,7 +303,9 @@ impl TornModel {
         // Per body: the diagonals at the copies of a node, in its normal row.
         let of_body = |body: usize| {
             let mut torn = self.zeros();
-            for (index, part) in system.parts.iter().enumerate().filter(|(index, _)| self.subdomains[*index].body == body) {
+            for (index, part) in
+                system.parts.iter().enumerate().filter(|(index, _)| self.subdomains[*index].body == body)
+            {
                 let starts = self.piece(index).1.pattern.lower.starts();
                 let diagonal = &mut torn.0[system.dofs(index)];
                 for (dof, diagonal) in diagonal.iter_mut().enumerate() {

@@ -41,7 +41,10 @@ impl Copies {
                 if nodes.iter().any(is_shared) {
                     let own = body.mesh.cell_nodes(cell, body.mesh.nodes()).node_stiffness();
                     let modulus = body.material(cell).shear_modulus();
-                    nodes.iter().zip(own).for_each(|(&node, own)| stiffness[next[node as usize] as usize] += modulus * own);
+                    nodes
+                        .iter()
+                        .zip(own)
+                        .for_each(|(&node, own)| stiffness[next[node as usize] as usize] += modulus * own);
                 }
             }
             for (local, &node) in piece.nodes.iter().enumerate() {
@@ -234,7 +237,9 @@ impl ContactNode {
         let total: f64 = self
             .parts
             .iter()
-            .map(|part| part.compliance * part.weight.powi(2) * square(own(part)) / (part.copies.len() as f64 * nu * nu))
+            .map(|part| {
+                part.compliance * part.weight.powi(2) * square(own(part)) / (part.copies.len() as f64 * nu * nu)
+            })
             .sum();
         let (mut row, mut weights) = (Vec::new(), Vec::new());
         for part in &self.parts {
