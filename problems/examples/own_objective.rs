@@ -5,7 +5,7 @@
 //! paper's Example 5.2. It is summed over two load cases. `docs/tutorial_objective.md` explains the steps.
 
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
-use contact::scene::{Scene, hertz};
+use contact::scene::hertz;
 use nonsmooth::verify::{self, Direction};
 use nonsmooth::{
     BundleTrust, BundleTrustConfig, Cost, CostGradient, FnObjective, ReducedObjective, Report, StateSolver, Vector,
@@ -14,36 +14,34 @@ use std::error::Error;
 
 /// The mean square of the friction traction.
 struct Shear {
-    /// Tributary area of every contact node, mm².
+    /// Tributary area of every contact node at the start, mm²; projected areas do not change with the shape.
     areas: Vec<f64>,
 }
 
 impl Cost<ContactState> for Shear {
     fn value(&self, _control: &Vector, state: &ContactState) -> f64 {
         let terms = state.forces.tangential.iter().zip(&self.areas);
-        terms.map(|([f1, f2], area)| (f1 * f1 + f2 * f2) / area).sum::<f64>() / self.areas.iter().sum::<f64>()
+        terms.map(|(force, area)| force.iter().map(|f| f * f).sum::<f64>() / area).sum::<f64>()
+            / self.areas.iter().sum::<f64>()
     }
 
-    /// The dual of a state has one entry per normal force, then two per tangential force.
+    /// The dual of a state has one entry per contact row: the normal one of a node, then its tangential ones.
     fn gradient(&self, control: &Vector, state: &ContactState) -> CostGradient {
-        let (count, whole) = (self.areas.len(), self.areas.iter().sum::<f64>());
-        let mut dual = Vector::zeros(3 * count);
-        for (node, (force, area)) in state.forces.tangential.iter().zip(&self.areas).enumerate() {
-            for (axis, force) in force.iter().enumerate() {
-                dual[count + 2 * node + axis] = 2.0 * force / (area * whole);
-            }
-        }
+        let whole = self.areas.iter().sum::<f64>();
+        let slope = |(force, area): (&[f64; 3], &f64)| force.map(|force| 2.0 * force / (area * whole));
+        let tangential: Vec<[f64; 3]> = state.forces.tangential.iter().zip(&self.areas).map(slope).collect();
+        let dual = Vector::from_vec(state.rows.pack(&vec![0.0; self.areas.len()], &tangential));
         CostGradient { control: Vector::zeros(control.len()), state: dual }
     }
 }
 
 /// The scene with all loads times a factor.
 fn load_case(factor: f64) -> Result<ReducedObjective<ContactShape, Shear>, Box<dyn Error>> {
-    let mut scene = Scene { mesh: [4; 3], ..hertz()? };
+    let mut scene = hertz()?.with_bricks([4; 3], [2; 3]);
     let loads = scene.upper.iter_mut().flat_map(|upper| &mut upper.body.loads);
-    loads.for_each(|load| load.traction.iter_mut().for_each(|traction| *traction *= factor));
+    loads.for_each(|load| *load = load.scaled(factor));
     let shape = ContactShape::new(scene, SolverKind::Auto)?;
-    let areas = shape.problem().boundary.points.iter().map(|point| point.area).collect();
+    let areas = shape.problem().start_rows().areas();
     Ok(ReducedObjective::new(shape, Shear { areas }))
 }
 

@@ -10,7 +10,7 @@ fn read<T: serde::de::DeserializeOwned>(file: &Path) -> T {
     serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
 }
 
-fn check(binary: &str, mut scene: scene::Scene) {
+fn check(binary: &str, scene: scene::Scene) {
     let folder = std::env::temp_dir().join(format!("nonsmooth-recheck-{}-{}", scene.name, std::process::id()));
     let arguments = ["optimize", "--mesh", "4", "--max-evaluations", "25", "--out"];
     let output = Command::new(binary).args(arguments).arg(&folder).output().unwrap();
@@ -20,8 +20,7 @@ fn check(binary: &str, mut scene: scene::Scene) {
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(certificate.point.as_slice(), controls.concat());
 
-    (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
-    let problem = ContactProblem::new(scene).unwrap();
+    let problem = ContactProblem::new(scene.with_bricks([4; 3], [2; 3])).unwrap();
     let recheck = certificate.recheck(problem.admissible.polyhedron()).unwrap();
     let near = |own: f64, again: f64| (own - again).abs() <= 1e-8 * own.abs();
     assert!(near(certificate.aggregate_norm, recheck.aggregate_norm), "{recheck:?} {certificate}");

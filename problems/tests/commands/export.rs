@@ -2,7 +2,7 @@
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::scene::{Scene, hertz, signorini};
-use contact::shape::SplineKind;
+use contact::shape::{HeightShape, SplineKind};
 use serde_json::{Value, json};
 use std::path::Path;
 use testset::kit::step_file::{Surface, entities};
@@ -15,8 +15,16 @@ const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
 
 /// Controls that are not flat, inside the admissible set.
 fn uneven(scene: &Scene) -> Vec<f64> {
-    let count = scene.control_points.iter().product();
-    (0..count).map(|index: usize| scene.start_height * (0.985 + 0.01 * (1.7 * index as f64).sin())).collect()
+    let start = scene.shape.start().into_iter().enumerate();
+    start.map(|(index, height)| height * (0.985 + 0.01 * (1.7 * index as f64).sin())).collect()
+}
+
+fn surface_of(scene: &Scene) -> &HeightShape {
+    scene.heights().unwrap()
+}
+
+fn size(scene: &Scene) -> [f64; 2] {
+    scene.blocks().unwrap().size
 }
 
 /// The height of the surface at a place, mm: basis functions by Cox and de Boor's recursion on the knots 0 … 1.
@@ -32,12 +40,12 @@ fn height(scene: &Scene, controls: &[f64], place: [f64; 2]) -> f64 {
             + ratio(right - t, right - knots[index + 1]) * basis(knots, degree - 1, index + 1, t)
     }
     let along = |axis: usize| -> Vec<f64> {
-        let count = scene.control_points[axis];
-        let degree = if let SplineKind::BSpline(degree) = scene.surface { degree } else { count - 1 };
+        let count = surface_of(scene).control_points[axis];
+        let degree = if let SplineKind::BSpline(degree) = surface_of(scene).spline { degree } else { count - 1 };
         let spans = (count - degree) as f64;
         let knot = |index: usize| index.clamp(degree, count).saturating_sub(degree) as f64 / spans;
         let knots: Vec<f64> = (0..count + degree + 1).map(knot).collect();
-        (0..count).map(|index| basis(&knots, degree, index, place[axis] / scene.size[axis])).collect()
+        (0..count).map(|index| basis(&knots, degree, index, place[axis] / size(scene)[axis])).collect()
     };
     let (first, second) = (along(0), along(1));
     let row = |i: usize| -> f64 { second.iter().zip(&controls[i * second.len()..]).map(|(b, c)| b * c).sum() };
@@ -48,8 +56,16 @@ fn height(scene: &Scene, controls: &[f64], place: [f64; 2]) -> f64 {
 fn the_files_hold_the_surface_and_the_bodies() {
     let cases = [
         (HERTZ, hertz().unwrap(), vec![]),
-        (SIGNORINI, Scene { surface: SplineKind::Bezier, ..signorini().unwrap() }, vec!["--surface", "bezier"]),
-        (HERTZ, Scene { surface: SplineKind::BSpline(1), ..hertz().unwrap() }, vec!["--surface", "bspline:1"]),
+        (
+            SIGNORINI,
+            signorini().unwrap().with_heights(|heights| heights.spline = SplineKind::Bezier),
+            vec!["--surface", "bezier"],
+        ),
+        (
+            HERTZ,
+            hertz().unwrap().with_heights(|heights| heights.spline = SplineKind::BSpline(1)),
+            vec!["--surface", "bspline:1"],
+        ),
     ];
     for (program, scene, options) in cases {
         let folder = scratch();
@@ -75,12 +91,12 @@ fn the_files_hold_the_surface_and_the_bodies() {
             for index in 0..1000_u32 {
                 let places = [0.618_034, 0.754_878].map(|step| (f64::from(index) * step).fract());
                 let [x1, x2, x3] = surface.at(places);
-                let place = [scene.size[0] * places[0], scene.size[1] * places[1]];
+                let place = [size(&scene)[0] * places[0], size(&scene)[1] * places[1]];
                 let distance = (x1 - place[0]).abs().max((x2 - place[1]).abs());
                 largest = largest.max(distance).max((x3 - height(&scene, &controls, place)).abs());
             }
             // Rounding of sums of heights of 100 mm.
-            assert!(largest < 2e-13 * scene.size[0].max(scene.start_height), "{name}: {largest} mm");
+            assert!(largest < 2e-13 * size(&scene)[0].max(surface_of(&scene).start_height), "{name}: {largest} mm");
         }
         check_table(&out, &scene, &controls);
     }
@@ -111,15 +127,15 @@ fn check_triangles(out: &Path, scene: &Scene, controls: &[f64], tolerance: f64) 
     }
     // Vertical distances, on slopes below 5 %.
     assert!(largest <= tolerance * 1.002 && largest > 0.05 * tolerance, "{largest} mm of {tolerance} mm");
-    let base = scene.size[0] * scene.size[1];
-    let mean: f64 = scene.spline_surface().unwrap().integrals().iter().zip(controls).map(|(a, b)| a * b).sum();
+    let base = size(scene)[0] * size(scene)[1];
+    let mean: f64 = surface_of(scene).surface().unwrap().integrals().iter().zip(controls).map(|(a, b)| a * b).sum();
     assert!((volume(&lower) - base * mean).abs() <= tolerance * base, "{} {}", volume(&lower), base * mean);
     if let Some(upper) = &scene.upper {
         let body = read("upper_body.stl");
         assert_eq!(edges(&body).1, 0, "the upper body is closed");
         // The mean height of the sphere by the midpoint rule, which errs by less than the tolerance here.
         let places = (0..400 * 400).map(|index| [index / 400, index % 400].map(|i| (f64::from(i) + 0.5) / 400.0));
-        let sum: f64 = places.map(|[s, t]| scene.counter_surface.height(scene.size[0] * s, scene.size[1] * t)).sum();
+        let sum: f64 = places.map(|[s, t]| scene.counter_surface.height(size(scene)[0] * s, size(scene)[1] * t)).sum();
         let expected = base * (upper.top - sum / 160_000.0);
         assert!((volume(&body) - expected).abs() <= 1.1 * tolerance * base, "{} {expected}", volume(&body));
     }
@@ -134,7 +150,7 @@ fn check_table(out: &Path, scene: &Scene, controls: &[f64]) {
         .map(|line| line.split(',').map(|number| number.parse().unwrap()).collect::<Vec<f64>>().try_into().unwrap())
         .collect();
     assert_eq!(rows.len(), 101 * 101);
-    assert_eq!([rows[0][0], rows[0][1], rows[10_200][0], rows[10_200][1]], [0.0, 0.0, scene.size[0], scene.size[1]]);
+    assert_eq!([rows[0][0], rows[0][1], rows[10_200][0], rows[10_200][1]], [0.0, 0.0, size(scene)[0], size(scene)[1]]);
     for [x1, x2, x3] in rows.into_iter().step_by(37) {
         assert!((x3 - height(scene, controls, [x1, x2])).abs() < 1e-12 * x3, "({x1}, {x2})");
     }
@@ -297,14 +313,15 @@ fn matrices_balance_the_forces_of_the_program() {
     let numbers = |key: &str| -> Vec<f64> { serde_json::from_value(lists[key].clone()).unwrap() };
     let unknowns: Vec<[usize; 3]> = serde_json::from_value(lists["unknowns"].clone()).unwrap();
     assert_eq!((sizes, contact_sizes), ([unknowns.len(); 2], [75, unknowns.len()]));
-    let scene = Scene { mesh: [4; 3], ..hertz().unwrap() };
+    let scene = hertz().unwrap().with_bricks([4; 3], [2; 3]);
     let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
     let control = shape.start();
     let state = nonsmooth::StateSolver::solve(&shape, &control, None, nonsmooth::Accuracy::TIGHTEST).unwrap();
     let bodies = shape.fields(&state).unwrap().bodies;
     let u: Vec<f64> = unknowns.iter().map(|&[body, node, axis]| bodies[body].displacement[node][axis]).collect();
     let forces = state.forces.normal.iter().zip(&state.forces.tangential);
-    let r: Vec<f64> = forces.flat_map(|(normal, [first, second])| [*normal, *first, *second]).collect();
+    // With normals along x3, the tangential rows are those of x1 and x2.
+    let r: Vec<f64> = forces.flat_map(|(normal, [first, second, _])| [*normal, *first, *second]).collect();
     let mut rest: Vec<f64> = numbers("load").iter().map(|force| -force).collect();
     for (row, column, value) in stiffness {
         rest[row] += value * u[column];

@@ -11,7 +11,7 @@ use contact::error::SceneError;
 use contact::memory;
 use contact::solvers::Wanted;
 use nonsmooth::Journal;
-use problems::commands::parse_controls;
+use problems::commands::{Layout, parse_controls};
 use scene_file::{Case, SceneFile};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -162,24 +162,20 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     assert_eq!(SceneFile::parse(&file.print()?, "printed").as_ref().ok(), Some(&file), "the printed file differs");
     let case = Case::new(&file, folder)?;
     memory::check(&case.plan(Wanted::States), &InProcess)?;
-    let nodes = (case.scene.mesh[0] + 1) * (case.scene.mesh[1] + 1);
-    if nodes <= SMALL && case.scene.control_points.iter().product::<usize>() <= SMALL {
+    let bricks = case.scene.blocks().map_or([0; 3], |blocks| blocks.bricks);
+    if (bricks[0] + 1) * (bricks[1] + 1) <= SMALL && bricks[2] <= 40 && case.scene.control_count() <= SMALL {
         let problem = ContactProblem::new(case.scene.clone())?;
         let measure = case.measure(&problem)?;
-        let start =
-            case.start.unwrap_or_else(|| vec![case.scene.start_height; case.scene.control_points.iter().product()]);
+        let start = case.start.unwrap_or_else(|| case.scene.shape.start());
         match measure {
             Measure::Pressure(measure) | Measure::LimitedPressure(measure, _) => {
-                drop(PressureCost::new(measure, &problem.boundary)?)
+                drop(PressureCost::new(measure, &problem)?)
             }
-            Measure::Field(measure) if problem.scene.mesh[2] <= 40 => drop(FieldCost::new(measure, &problem)?),
-            Measure::Field(_) => {}
+            Measure::Field(measure) => drop(FieldCost::new(measure, &problem)?),
         }
         problem.admissible.check(&nonsmooth::Vector::from_vec(start.clone()))?;
-        if problem.scene.mesh[2] <= 40 {
-            // Inverted elements are refused later, with an error of the contact problem.
-            let _refused_or_not = problem.blocks(&start);
-        }
+        // Inverted elements are refused later, with an error of the contact problem.
+        let _refused_or_not = problem.positions(&start);
     }
     Ok(())
 }
@@ -237,7 +233,7 @@ impl Corpus {
         match random.below(16) {
             0 | 1 => {
                 let text = mutate(&self.controls, &mut random);
-                let result = catch_unwind(|| parse_controls(&text, "controls.json", [4, 9]).is_ok());
+                let result = catch_unwind(|| parse_controls(&text, "controls.json", Layout::Grid([4, 9])).is_ok());
                 (text, result)
             }
             2 => {

@@ -1,34 +1,27 @@
 //! Fields of solved shapes as VTU and PVD files, read back number by number.
 
-use contact::body::elasticity::brick;
+use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
+use contact::cost::{Measure, NodeWeight, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use contact::scene::{Scene, hertz, signorini};
 use exchange::vtk::{Note, NoteValue};
-use nonsmooth::composite::OuterFunction;
-use nonsmooth::{Accuracy, OutputJacobian, StateSolver};
+use nonsmooth::{Accuracy, StateSolver};
 use problems::vtk_files::{FieldState, FieldsError, vtk_files};
 use std::collections::HashMap;
 use testset::kit::vtu_file::{ReadGrid, read};
 
 /// Fields of the flat start of a small scene, with sensitivities.
-fn fields(mut scene: Scene) -> Fields {
-    scene.mesh = [4, 6, 2];
-    scene.subdomains = [2, 3, 1];
-    let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
+fn fields(scene: Scene) -> Fields {
+    let shape = ContactShape::new(scene.with_bricks([4, 6, 2], [2, 3, 1]), SolverKind::Newton).unwrap();
     let control = shape.start();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
-    let cost = PressureCost::new(
-        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
-        &shape.problem().boundary,
-    )
-    .unwrap();
-    let dual = shape.output_dual(&state, &cost.subgradient(&shape.outputs(&state)));
-    let (heights, _) = shape.height_sensitivity(&state, &dual).unwrap();
-    let mut fields = shape.fields(&state).unwrap();
-    fields.contact.sensitivity = Some(heights);
+    let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+    let objective = ContactObjective::new(shape, Measure::Pressure(measure)).unwrap();
+    let sensitivity = objective.position_sensitivity(&control, &state).unwrap();
+    let mut fields = objective.solver().fields(&state).unwrap();
+    fields.contact.set_sensitivity(&sensitivity);
     fields
 }
 
@@ -46,8 +39,8 @@ fn bodies_are_read_back_bit_by_bit() {
         let fields = fields(scene);
         let found = read(&files(&fields)["start_bodies.vtu"]);
         let bodies = &fields.bodies;
-        let nodes: usize = bodies.iter().map(|body| body.block.grid.node_count()).sum();
-        let bricks: usize = bodies.iter().map(|body| body.block.grid.brick_count()).sum();
+        let nodes: usize = bodies.iter().map(|body| body.mesh.node_count()).sum();
+        let bricks: usize = bodies.iter().map(|body| body.mesh.cell_count()).sum();
         assert_eq!((nodes, bricks), (bodies.len() * 5 * 7 * 3, bodies.len() * 4 * 6 * 2));
         assert_eq!((found.points.len(), found.cells.len()), (nodes, bricks));
         assert!(found.kinds.iter().all(|&kind| kind == 12));
@@ -59,7 +52,7 @@ fn bodies_are_read_back_bit_by_bit() {
         for (name, components, values) in expected {
             assert_eq!(found.point_data[name], (components, values), "{name}");
         }
-        let number = |body: usize| vec![body as f64 + 1.0; bodies[body].block.grid.brick_count()];
+        let number = |body: usize| vec![body as f64 + 1.0; bodies[body].mesh.cell_count()];
         let expected: [(&str, u32, Vec<f64>); 4] = [
             ("body", 1, (0..bodies.len()).flat_map(number).collect()),
             ("subdomain", 1, bodies.iter().flat_map(|body| body.subdomain.iter().map(|&s| s as f64)).collect()),
@@ -74,32 +67,31 @@ fn bodies_are_read_back_bit_by_bit() {
     }
 }
 
-/// Every cell has the volume of its brick, positive in VTK's order of points: face 0 1 2 3, then 4 5 6 7 above it.
+/// Every cell has the points and the volume of its brick, positive in VTK's order: face 0 1 2 3, then 4 5 6 7 above it.
 fn check_hexahedra(found: &ReadGrid, fields: &Fields) {
-    let bricks = fields.bodies.iter().flat_map(|body| body.block.grid.bricks().map(|brick| body.block.brick(brick)));
-    let corner = |index: usize| [index >> 2 & 1, index >> 1 & 1, index & 1];
-    // Corners of the unit cube in VTK's order, from the definition of its hexahedron.
-    let order = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
-    for (cell, nodes) in found.cells.iter().zip(bricks) {
+    let own = fields.bodies.iter().flat_map(|body| {
+        body.mesh.cells().enumerate().map(|(index, cell)| {
+            let points: Vec<[f64; 3]> = cell.nodes.iter().map(|&node| body.positions[node as usize]).collect();
+            (points, body.mesh.cell_nodes(index, &body.positions).volume())
+        })
+    });
+    for (cell, (own, volume)) in found.cells.iter().zip(own) {
         let points: Vec<[f64; 3]> = cell.iter().map(|&point| found.points[point]).collect();
-        for (point, place) in points.iter().zip(order) {
-            let ours = (0..8).find(|&index| corner(index) == place).unwrap();
-            assert_eq!(*point, nodes[ours]);
-        }
+        assert_eq!(points, own);
         // Vertical columns: base area times mean height.
         let (lower, upper) = points.split_at(4);
         let heights: f64 = lower.iter().zip(upper).map(|(below, above)| (above[2] - below[2]) / 4.0).sum();
         let turn = |i: usize, j: usize| points[i][0] * points[j][1] - points[j][0] * points[i][1];
         let area = 0.5 * (turn(0, 1) + turn(1, 2) + turn(2, 3) + turn(3, 0));
         assert!(area > 0.0 && heights > 0.0);
-        assert!((area * heights / brick::volume(&nodes) - 1.0).abs() < 1e-12);
+        assert!((area * heights / volume - 1.0).abs() < 1e-12);
     }
 }
 
 #[test]
 fn contact_boundary_is_read_back_bit_by_bit() {
     for (friction, scene) in [(0.3, signorini().unwrap()), (0.0, signorini().unwrap()), (0.3, hertz().unwrap())] {
-        let fields = fields(Scene { friction, ..scene });
+        let fields = fields(scene.with_friction(friction));
         let contact = &fields.contact;
         let found = read(&files(&fields)["start_contact.vtu"]);
         assert_eq!(found.points, contact.position);
@@ -121,9 +113,9 @@ fn contact_boundary_is_read_back_bit_by_bit() {
             ContactStatus::Stick => 1.0,
             ContactStatus::Slip => 2.0,
         };
-        let spatial = |pairs: &[[f64; 2]]| flat(pairs.iter().map(|pair| [pair[0], pair[1], 0.0]));
         let mut expected = vec![
             ("displacement", 3, flat(contact.displacement.clone())),
+            ("normal", 3, flat(contact.normal.clone())),
             ("pressure", 1, contact.pressure.clone()),
             ("status", 1, contact.status.iter().map(code).collect()),
             ("area", 1, contact.area.clone()),
@@ -132,8 +124,8 @@ fn contact_boundary_is_read_back_bit_by_bit() {
             ("sensitivity", 1, contact.sensitivity.clone().unwrap()),
         ];
         if friction > 0.0 {
-            expected.push(("traction", 3, spatial(contact.traction.as_ref().unwrap())));
-            expected.push(("slip", 3, spatial(contact.slip.as_ref().unwrap())));
+            expected.push(("traction", 3, flat(contact.traction.clone().unwrap())));
+            expected.push(("slip", 3, flat(contact.slip.clone().unwrap())));
         }
         assert_eq!(found.point_data.len(), expected.len());
         for (name, components, values) in expected {

@@ -226,6 +226,19 @@ impl ContactRows {
         normal.iter().zip(&self.nodes).map(|(force, node)| force / node.area).collect()
     }
 
+    /// Derivatives with respect to the packed rows from those with respect to the normal forces and to the tangential
+    /// forces along the axes (as [`ContactForces`](crate::equilibrium::ContactForces) has them), at fixed directions.
+    pub fn pack(&self, normal: &[f64], tangential: &[[f64; 3]]) -> Vec<f64> {
+        let mut packed = Vec::new();
+        for (index, node) in self.nodes.iter().enumerate() {
+            packed.push(normal[index]);
+            let along =
+                |direction: &[f64; 3]| (0..3).map(|axis| direction[axis] * tangential[index][axis]).sum::<f64>();
+            packed.extend(node.directions.iter().skip(1).map(along));
+        }
+        packed
+    }
+
     /// Initial gaps, mm.
     pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
         self.nodes.iter().map(|node| node.gap)
