@@ -3,14 +3,14 @@
 use crate::body::mesh::smallest_extent;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
-use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
+use crate::cost::{ContactAreas, FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, VolumeLimits};
 use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
 use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
-    Answer, CompositeObjective, ConstraintKind, Cost, CostGradient, Evaluation, Matrix, NonsmoothObjective,
-    OracleError, OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
+    Answer, CompositeObjective, ConstraintEvaluation, ConstraintKind, Cost, CostGradient, Evaluation, Matrix,
+    NonsmoothObjective, OracleError, OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
 };
 
 /// Least first step over the smallest extent of the body. Ten times as much costs evaluations on flat bodies.
@@ -19,10 +19,19 @@ const LEAST_FIRST_STEP: f64 = 1e-3;
 /// nothing about their shape.
 const LARGEST_FIRST_STEP: f64 = 0.5;
 
-/// Θ of a scene: a measure of the contact state that the control heights lead to. Where a pressure norm may lie outside
-/// the range of doubles, Θ is its p-th root.
+/// Θ of a scene: a measure of the contact state that the controls lead to, with limits beside it. Where a pressure norm
+/// may lie outside the range of doubles, Θ is its p-th root.
 #[derive(Debug)]
-pub enum ContactObjective<S: ContactSolver = AnySolver> {
+pub struct ContactObjective<S: ContactSolver = AnySolver> {
+    measured: Measured<S>,
+    limits: Vec<Limit>,
+    volume: VolumeLimits,
+    kinds: Vec<ConstraintKind>,
+}
+
+/// A measure of the states of a map.
+#[derive(Debug)]
+enum Measured<S: ContactSolver> {
     /// A convex function of the contact pressures.
     Pressure(CompositeObjective<ContactShape<S>, PressureCost>),
     /// A function of the displacements, which has no composite model.
@@ -39,58 +48,106 @@ pub enum ContactCost {
 }
 
 impl ContactCost {
-    /// The cost of a measure.
+    /// The cost of a measure with the limits that go with the contact pressures.
     ///
     /// # Errors
-    /// As [`PressureCost::new`] and [`FieldCost::new`].
-    pub fn new(measure: Measure, problem: &ContactProblem) -> Result<Self, SceneError> {
-        Ok(match measure {
-            Measure::Pressure(measure) => Self::Pressure(PressureCost::new(measure, problem)?.normalised_for(problem)),
-            Measure::LimitedPressure(measure, limit) => {
+    /// As [`PressureCost::new`] and [`FieldCost::new`]; [`SceneError::OutOfRange`] for a limit of the pressure beside a
+    /// function of the displacements, and for two.
+    pub fn new(measure: Measure, limits: &[Limit], problem: &ContactProblem) -> Result<Self, SceneError> {
+        let peak: Vec<&Limit> = limits.iter().filter(|limit| limit.quantity == LimitedQuantity::PeakPressure).collect();
+        let refused = |allowed: &str| Err(SceneError::out_of_range("limit", "peak-pressure", allowed));
+        Ok(match (measure, peak.as_slice()) {
+            (_, [_, _, ..]) => return refused("one limit of the peak pressure"),
+            (Measure::Pressure(measure), peak) => {
                 let cost = PressureCost::new(measure, problem)?.normalised_for(problem);
-                Self::Pressure(cost.limited(limit)?)
+                match peak {
+                    [limit] if limit.side != LimitSide::AtMost => return refused("at most a bound"),
+                    [limit, ..] => Self::Pressure(cost.limited(limit.bound)?),
+                    [] => Self::Pressure(cost),
+                }
             }
-            Measure::Field(measure) => Self::Field(FieldCost::new(measure, problem)?),
+            (Measure::Field(_), [_]) => return refused("none beside a function of the displacements"),
+            (Measure::Field(measure), []) => Self::Field(FieldCost::new(measure, problem)?),
         })
     }
 }
 
 impl<S: ContactSolver> ContactObjective<S> {
-    /// A measure of the states of a map.
+    /// A measure of the states of a map, with limits beside it.
     ///
     /// # Errors
-    /// As [`ContactCost::new`].
-    pub fn new(shape: ContactShape<S>, measure: Measure) -> Result<Self, SceneError> {
-        Ok(match ContactCost::new(measure, shape.problem())? {
+    /// As [`ContactCost::new`]; [`SceneError::OutOfRange`] for bounds of the volume that are not finite and > 0.
+    pub fn new(shape: ContactShape<S>, measure: Measure, limits: &[Limit]) -> Result<Self, SceneError> {
+        let volume = VolumeLimits::new(limits, shape.problem())?;
+        // The optimizer has the constraints of the pressures first, then those of the shape.
+        let (mut limits, of_shape): (Vec<Limit>, Vec<Limit>) =
+            limits.iter().partition(|limit| !limit.quantity.is_of_shape());
+        let measured = match ContactCost::new(measure, &limits, shape.problem())? {
             ContactCost::Pressure(cost) => {
-                Self::Pressure(CompositeObjective::new(shape.with_outputs(cost.outputs()), cost))
+                Measured::Pressure(CompositeObjective::new(shape.with_outputs(cost.outputs()), cost))
             }
-            ContactCost::Field(cost) => Self::Field(ReducedObjective::new(shape.with_displacements(), cost)),
-        })
+            ContactCost::Field(cost) => Measured::Field(ReducedObjective::new(shape.with_displacements(), cost)),
+        };
+        limits.extend(of_shape);
+        let kinds = limits.iter().map(Limit::kind).collect();
+        Ok(Self { measured, limits, volume, kinds })
     }
 
-    /// The map from control heights to contact states.
+    /// The limits, in the order of the constraints of the optimizer.
+    pub fn limits(&self) -> &[Limit] {
+        &self.limits
+    }
+
+    /// The values of the limited quantities at a state already found, in the order of [`Self::limits`].
+    pub fn limited_values(&self, control: &Vector, state: &ContactState<S::State>) -> Vec<f64> {
+        let of_state = self.limits.iter().filter(|limit| !limit.quantity.is_of_shape());
+        let peak = || self.pressures(state).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let mut values: Vec<f64> = of_state.map(|_| peak()).collect();
+        values.extend(self.volume.values(self.solver().problem(), control));
+        values
+    }
+
+    /// Adds the constraints of the shape to those of an evaluation.
+    fn add_constraints(&self, control: &Vector, evaluation: &mut Evaluation<ContactWarmStart>) {
+        let own = self.volume.constraints(self.solver().problem(), control);
+        if own.is_empty() {
+            return;
+        }
+        let known = evaluation.constraints.take();
+        let known =
+            known.unwrap_or_else(|| ConstraintEvaluation::new(Vector::zeros(0), Matrix::zeros(0, control.len())));
+        let (first, count) = (known.values.len(), known.values.len() + own.len());
+        let mut jacobian = known.jacobian.resize_vertically(count, 0.0);
+        let mut values = known.values.resize_vertically(count, 0.0);
+        for (index, (value, gradient)) in own.into_iter().enumerate() {
+            values[first + index] = value;
+            jacobian.set_row(first + index, &gradient.transpose());
+        }
+        evaluation.constraints = Some(ConstraintEvaluation { values, jacobian, pieces: known.pieces });
+    }
+
+    /// The map from controls to contact states.
     pub fn solver(&self) -> &ContactShape<S> {
-        match self {
-            Self::Pressure(objective) => objective.solver(),
-            Self::Field(objective) => objective.solver(),
+        match &self.measured {
+            Measured::Pressure(objective) => objective.solver(),
+            Measured::Field(objective) => objective.solver(),
         }
     }
 
     /// Θ at a state already found.
     pub fn value(&self, control: &Vector, state: &ContactState<S::State>) -> f64 {
-        match self {
-            Self::Pressure(objective) => objective.value(state),
-            Self::Field(objective) => objective.cost().value(control, state),
+        match &self.measured {
+            Measured::Pressure(objective) => objective.value(state),
+            Measured::Field(objective) => objective.cost().value(control, state),
         }
     }
 
     /// The gradients of the cost by the controls at a fixed state, and by the state at fixed controls, y*: what the
     /// coderivative is asked for.
     pub fn cost_gradient(&self, control: &Vector, state: &ContactState<S::State>) -> CostGradient {
-        match self {
-            Self::Pressure(objective) => objective.cost_gradient(control, state),
-            Self::Field(objective) => objective.cost().gradient(control, state),
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost_gradient(control, state),
+            Measured::Field(objective) => objective.cost().gradient(control, state),
         }
     }
 
@@ -103,9 +160,9 @@ impl<S: ContactSolver> ContactObjective<S> {
         control: &Vector,
         state: &ContactState<S::State>,
     ) -> Result<Evaluation<ContactWarmStart>, OracleError> {
-        match self {
-            Self::Pressure(objective) => objective.differentiate(control, state),
-            Self::Field(objective) => objective.differentiate(control, state),
+        match &self.measured {
+            Measured::Pressure(objective) => objective.differentiate(control, state),
+            Measured::Field(objective) => objective.differentiate(control, state),
         }
     }
 
@@ -121,10 +178,10 @@ impl<S: ContactSolver> ContactObjective<S> {
     ) -> Result<Vec<[f64; 3]>, OracleError> {
         let dual = self.cost_gradient(control, state).state;
         let mut positions = self.solver().position_sensitivity(state, &dual)?.0;
-        let explicit = match (self, &state.bodies) {
-            (Self::Field(objective), Some(bodies)) => objective.cost().gradient_of(bodies).positions,
-            (Self::Field(_), None) => return Ok(positions),
-            (Self::Pressure(objective), _) => {
+        let explicit = match (&self.measured, &state.bodies) {
+            (Measured::Field(objective), Some(bodies)) => objective.cost().gradient_of(bodies).positions,
+            (Measured::Field(_), None) => return Ok(positions),
+            (Measured::Pressure(objective), _) => {
                 let weights = objective.cost().subgradient(&self.solver().outputs(state));
                 self.solver().output_position_gradient(control, state, &weights)
             }
@@ -142,76 +199,76 @@ impl<S: ContactSolver> ContactObjective<S> {
 
     /// The wanted pressure per contact node, MPa, where the deviation from it is minimised.
     pub fn wanted(&self) -> Option<&[f64]> {
-        match self {
-            Self::Pressure(objective) => objective.cost().wanted(),
-            Self::Field(_) => None,
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().wanted(),
+            Measured::Field(_) => None,
         }
     }
 
-    /// The limit of the largest contact pressure, MPa, if there is one.
-    pub fn peak_limit(&self) -> Option<f64> {
-        match self {
-            Self::Pressure(objective) => objective.cost().peak_limit(),
-            Self::Field(_) => None,
+    /// Why Θ does not change near a state of contact, where more is known than that its derivative is zero.
+    pub(crate) fn why_flat(&self, state: &ContactState<S::State>) -> Option<String> {
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().why_flat(state),
+            Measured::Field(_) => None,
         }
     }
 
     /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements, and
     /// where normals or areas change with the shape.
     pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
-        match self {
-            Self::Pressure(objective) if self.solver().problem().geometry.is_fixed() => {
+        match &self.measured {
+            Measured::Pressure(objective) if self.solver().problem().geometry.is_fixed() => {
                 objective.cost().lower_bound(total_force)
             }
-            Self::Pressure(_) | Self::Field(_) => None,
+            Measured::Pressure(_) | Measured::Field(_) => None,
         }
     }
 
     /// The unit of Θ, such as `MPa^{4}·mm^{2}`.
     pub fn unit(&self) -> String {
-        match self {
-            Self::Pressure(objective) => objective.cost().unit(),
-            Self::Field(objective) => objective.cost().unit().into(),
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().unit(),
+            Measured::Field(objective) => objective.cost().unit().into(),
         }
     }
 
     /// A value of Θ as a pressure, where Θ is a sum of powers of pressures.
     pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
-        match self {
-            Self::Pressure(objective) => objective.cost().pressure_root(value),
-            Self::Field(_) => None,
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().pressure_root(value),
+            Measured::Field(_) => None,
         }
     }
 
     /// p where Θ is (Σσ^p)^{1/p} in place of Σσ^p, else 1.
     pub fn root(&self) -> f64 {
-        match self {
-            Self::Pressure(objective) => objective.cost().root(),
-            Self::Field(_) => 1.0,
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().root(),
+            Measured::Field(_) => 1.0,
         }
     }
 
     /// As [`PressureCost::norm_of_root`]; none for functions of the displacements.
     pub fn norm_of_root(&self) -> Option<(f64, String)> {
-        match self {
-            Self::Pressure(objective) => objective.cost().norm_of_root(),
-            Self::Field(_) => None,
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().norm_of_root(),
+            Measured::Field(_) => None,
         }
     }
 
     /// As [`PressureCost::norm_in_mpa`]; none for functions of the displacements.
     pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
-        match self {
-            Self::Pressure(objective) => objective.cost().norm_in_mpa(value),
-            Self::Field(_) => None,
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().norm_in_mpa(value),
+            Measured::Field(_) => None,
         }
     }
 
     /// The contact areas of a state, where the open area is what is minimised.
     pub fn contact_areas(&self, state: &ContactState<S::State>) -> Option<ContactAreas> {
-        match self {
-            Self::Pressure(objective) => objective.cost().contact_areas(state),
-            Self::Field(_) => None,
+        match &self.measured {
+            Measured::Pressure(objective) => objective.cost().contact_areas(state),
+            Measured::Field(_) => None,
         }
     }
 
@@ -250,23 +307,23 @@ impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
     }
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
-        match self {
-            Self::Pressure(objective) => objective.outer(),
-            Self::Field(objective) => objective.outer(),
+        match &self.measured {
+            Measured::Pressure(objective) => objective.outer(),
+            Measured::Field(objective) => objective.outer(),
         }
     }
 
     fn constraint_kinds(&self) -> &[ConstraintKind] {
-        match self {
-            Self::Pressure(objective) => objective.constraint_kinds(),
-            Self::Field(objective) => objective.constraint_kinds(),
-        }
+        &self.kinds
     }
 
     fn evaluate(&self, request: &Request<'_, ContactWarmStart>) -> Result<Answer<ContactWarmStart>, OracleError> {
-        match self {
-            Self::Pressure(objective) => objective.evaluate(request),
-            Self::Field(objective) => objective.evaluate(request),
-        }
+        let mut answer = match &self.measured {
+            Measured::Pressure(objective) => objective.evaluate(request),
+            Measured::Field(objective) => objective.evaluate(request),
+        }?;
+        let (Answer::Accurate(evaluation) | Answer::NoDescent(evaluation)) = &mut answer;
+        self.add_constraints(request.point, evaluation);
+        Ok(answer)
     }
 }

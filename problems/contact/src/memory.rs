@@ -67,6 +67,11 @@ pub(crate) fn estimate(
     NUMBER * (owned * per_piece + DUAL_VECTORS * rows + coarse) + tangents
 }
 
+/// Memory that a plan needs in one process, bytes, roughly.
+pub fn needed(plan: &SolverPlan) -> f64 {
+    estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), 1)
+}
+
 /// Refuses a scene that needs more memory than the machine has to give. Where the system does not
 /// tell, nothing is refused. Of several processes, each looks at its own machine, and all refuse if one does.
 ///

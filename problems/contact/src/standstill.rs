@@ -64,8 +64,5 @@ fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, state: &ContactSt
         let reason = "the bodies do not touch there; bring them together by loads, the start or the counter surface";
         return Some(reason.into());
     }
-    match objective {
-        ContactObjective::Pressure(objective) => objective.cost().why_flat(state),
-        ContactObjective::Field(_) => None,
-    }
+    objective.why_flat(state)
 }

@@ -2,16 +2,18 @@
 
 use crate::bodies::body;
 use crate::grid_file;
-use crate::limit::peak_limit;
+use crate::limit::limits;
 use crate::mesh_file::{self, MeshFile};
 use crate::{
     AccuracyName, CounterSection, MeshBodySection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile,
     SplineName, StartSection, SurfaceSection, UpperSection,
 };
-use contact::cost::Measure;
+use contact::body::load_size;
+use contact::body::mesh::Mesh;
+use contact::cost::{Limit, Measure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
-use contact::scene::{Blocks, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
+use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
 use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 use contact::solvers::{SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
@@ -30,8 +32,8 @@ pub struct Case {
     pub start: Option<Vec<f64>>,
     /// What is minimised.
     pub objective: Objective,
-    /// The limit of the largest contact pressure, MPa, if there is one.
-    pub peak_limit: Option<f64>,
+    /// The limits of what the shape leads to.
+    pub limits: Vec<Limit>,
     /// What proposes trial points.
     pub method: MethodName,
     /// The contact solver.
@@ -65,14 +67,14 @@ impl Case {
             let height = scene.heights().map_or(0.0, |heights| heights.start_height);
             wanted.at(&blocks.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
-        let peak_limit = peak_limit(&file.limit, &objective)?;
+        let limits = limits(&file.limit, &objective, scene.heights().is_none())?;
         let method = method(&objective, file.optimizer.method)?;
         check_accuracy(&objective, file.optimizer.accuracy)?;
         Ok(Self {
             scene,
             start,
             objective,
-            peak_limit,
+            limits,
             method,
             solver: file.solver.kind,
             preconditioner: file.solver.preconditioner,
@@ -83,15 +85,12 @@ impl Case {
         })
     }
 
-    /// What is minimised under which limits, on the mesh of a problem.
+    /// What is minimised, on the mesh of a problem.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for a formula that is not finite at a contact node, with the place.
     pub fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
-        Ok(match (self.objective.measure(problem)?, self.peak_limit) {
-            (Measure::Pressure(measure), Some(limit)) => Measure::LimitedPressure(measure, limit),
-            (measure, _) => measure,
-        })
+        self.objective.measure(problem)
     }
 
     /// How the scene is to be solved.
@@ -168,12 +167,14 @@ fn mesh_scene(file: &SceneFile, body: &MeshBodySection, folder: &Path) -> Result
             ));
         }
     }
-    let MeshFile { mesh, notes } = mesh_file::read(&folder.join(&body.mesh), body.unit)?;
+    let MeshFile { mesh, mut notes } = mesh_file::read(&folder.join(&body.mesh), body.unit)?;
     let face = required("contact.face", file.contact.face.as_ref(), "the physical surface of the mesh that may touch")?;
     let lattice = required("lattice", file.lattice.as_ref(), "a table, for the shapes of a mesh")?;
+    let lower = body.scene()?;
+    notes.extend(doubts_of_unit(&mesh, &lower)?);
     let scene = Scene {
         name: file.name.clone(),
-        lower: body.scene()?,
+        lower,
         upper: None,
         counter_surface: counter_surface(&file.counter_surface, None, folder)?,
         contact: file.contact.scene(face, file.friction, false),
@@ -181,6 +182,38 @@ fn mesh_scene(file: &SceneFile, body: &MeshBodySection, folder: &Path) -> Result
         geometry: Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: body.pieces }),
     };
     Ok(Parts { scene, start: None, notes })
+}
+
+/// Extents of a body, mm, outside which its unit is doubtful.
+const USUAL_EXTENTS: [f64; 2] = [1.0, 2e4];
+/// Nominal strain above which loads, unit or elastic constants are doubtful: linear elasticity ends before.
+const USUAL_STRAIN: f64 = 0.05;
+
+/// Signs of a mesh in another unit than the scene says: an unusual extent, and loads that strain the body too much.
+fn doubts_of_unit(mesh: &Mesh, body: &BodyScene) -> Result<Vec<String>, SceneError> {
+    let extent = |axis: usize| {
+        let along = || mesh.nodes().iter().map(|x| x[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    let mut extents = [extent(0), extent(1), extent(2)];
+    extents.sort_by(f64::total_cmp);
+    let mut doubts = Vec::new();
+    if extents[2] < USUAL_EXTENTS[0] || extents[2] > USUAL_EXTENTS[1] {
+        doubts.push(format!(
+            "the body is {:.3e} mm long: is body.unit the unit of the mesh? (\"mm\", \"cm\", \"m\" or \"inch\")",
+            extents[2]
+        ));
+    }
+    let (load, section) = (load_size(mesh, &body.loads)?, extents[0] * extents[1]);
+    let strain = load / section / body.material.young_modulus();
+    if strain > USUAL_STRAIN {
+        doubts.push(format!(
+            "the loads, {load:.3e} N in all, over the section of the body, {section:.3e} mm^2, strain it by {:.1e} %: are \
+             body.unit, the loads (N, MPa) and young_modulus (MPa) what they should be?",
+            100.0 * strain
+        ));
+    }
+    Ok(doubts)
 }
 
 /// 2 subdomains per edge, or, where 2 does not divide the bricks, the divisor that leaves closest to six bricks.

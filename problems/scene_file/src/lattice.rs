@@ -73,10 +73,6 @@ pub struct LatticeSection {
     /// Bounds of the displacements of nodes by the shape, a row each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bounds: Vec<NodeBoundSection>,
-    /// Least and largest volume of the body over that at the start. Default none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = 0.0, max = 1e6)), extend("x-unit" = "1"))]
-    pub volume: Option<[f64; 2]>,
 }
 
 /// A sector of a tube.
@@ -151,7 +147,6 @@ impl LatticeSection {
             frozen: self.frozen,
             displacement: self.displacement,
             node_bounds: self.bounds.iter().map(bound).collect(),
-            volume: self.volume,
         })
     }
 

@@ -33,7 +33,7 @@ pub use bodies::{
 pub use case::{Case, default_subdomains};
 pub use contact_section::{ContactSection, FrictionSection};
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
-pub use limit::{LimitSection, LimitedQuantity};
+pub use limit::{LimitSection, QuantityName};
 pub use objective::{BodyName, MeasureName, Objective, ObjectiveSection, RegionSection, WantedSection};
 pub use schema::schema;
 pub use setting::{Setting, check_path};

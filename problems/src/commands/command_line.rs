@@ -6,13 +6,15 @@ use crate::commands::file_limit::let_large_writes_fail;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
+use crate::commands::numbers::number;
 use crate::commands::output::{finish, left, notice};
 use crate::commands::scene_options::help_with_defaults;
 use crate::commands::shell_files::{asked, examples};
 use crate::commands::{compare, evaluate, export, optimize, recheck, study, verify};
 use clap::{Arg, value_parser};
 use contact::equilibrium::STAGE_TARGET;
-use contact::solvers::Processes;
+use contact::memory;
+use contact::solvers::{Processes, Wanted};
 use scene_file::{SceneFile, schema};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -109,6 +111,7 @@ pub fn execute_among(
     if arguments.series.vtk_history && loaded.case.output.folder.is_none() {
         return Err(Failure::Input("--vtk-history is allowed with --out or --resume only: it writes files".into()));
     }
+    tell_of_files(&loaded);
     let session = Session { arguments, clock: Instant::now(), status, processes: processes.clone() };
     let result = match arguments.command {
         Command::Optimize => optimize::run(&loaded, &session),
@@ -121,6 +124,16 @@ pub fn execute_among(
     };
     session.status.clear();
     result
+}
+
+/// Says on stderr what was found in the files of a scene, and what memory it takes, before any work.
+fn tell_of_files(loaded: &LoadedScene) {
+    let notes = &loaded.case.notes;
+    notes.iter().for_each(|note| notice(note));
+    if !notes.is_empty() {
+        let megabytes = memory::needed(&loaded.case.plan(Wanted::States)) / 1e6;
+        notice(&format!("a state takes about {} MB of memory", number(megabytes.ceil())));
+    }
 }
 
 /// Listens to the events of the solvers: for a log on stderr if the environment variable RUST_LOG asks for it, else for

@@ -67,14 +67,12 @@ fn result<W>(
     // Squares of entries above 1e154 are no doubles.
     let largest = subgradient.amax().max(f64::MIN_POSITIVE);
     let unit = if objective_root == root { objective.unit() } else { norm_unit };
-    let limits: Vec<_> = shape
-        .peak_limit
-        .iter()
-        .map(|at_most| {
-            let violation = shape.above_limit();
-            json!({ "quantity": "peak-pressure", "at_most": at_most, "end": shape.peak_pressure, "violation": violation })
-        })
-        .collect();
+    let limits = shape.limits.iter().map(|limit| {
+        let mut keys = limit.keys();
+        keys.extend([("end".to_owned(), json!(limit.value)), ("violation".to_owned(), json!(limit.excess()))]);
+        keys
+    });
+    let limits: Vec<_> = limits.collect();
     let mut result = vec![
         shape_facts::peak_pressure(&[shape]),
         Fact::json("limits", &limits)?,
@@ -82,7 +80,7 @@ fn result<W>(
         Fact::json("objective_unit", &plain_unit(&unit))?,
         Fact::json("objective_root", &objective_root)?,
     ];
-    result.extend(shape_facts::limit(&[shape]));
+    result.extend(shape_facts::limits(&[shape]));
     result.extend(shape_facts::objective(objective, &[shape]).into_iter().skip(1));
     result.extend(shape_facts::contact_areas(objective, &[shape]));
     let logarithm = (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10());
@@ -101,9 +99,9 @@ fn lead(objective: &ContactObjective, shape: &SolvedShape) -> Vec<String> {
     let plain = || format!("objective Θ {} {}", number(shape.value), raised(&objective.unit()));
     let value = objective.pressure_root(shape.value).map_or_else(plain, value);
     let name = &objective.solver().problem().scene.name;
-    let violated = if shape.keeps_limit() { "" } else { ", above its limit" };
+    let violated = if shape.keeps_limits() { "" } else { "; a limit is VIOLATED" };
     vec![
-        format!("{name}: peak pressure {} MPa{violated}; {value}", number(shape.peak_pressure)),
+        format!("{name}: peak pressure {} MPa; {value}{violated}", number(shape.peak_pressure)),
         format!("contact nodes: {} open, {} stick, {} slip", counts.open, counts.stick, counts.slip),
     ]
 }

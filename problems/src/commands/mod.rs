@@ -18,6 +18,8 @@ mod failure;
 mod file_limit;
 mod folder;
 mod interrupt;
+mod limit_check;
+mod limited_value;
 mod loaded_scene;
 mod long_run;
 mod mesh_words;

@@ -5,41 +5,23 @@ use crate::commands::controls::{self, Layout};
 use crate::commands::facts::{Fact, Facts, Group, Value, line};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{SCENE, file_error, json};
+use crate::commands::limit_check::{LimitCheck, MAX_ROUNDING, Number};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, last_begun};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{differences, is_below};
 use contact::contact_objective::ContactCost;
 use contact::equilibrium::ContactProblem;
-use nonsmooth::{Certificate, CertificateCheck, CompositeProof, ConstraintKind, ProofCheck, Vector};
+use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
 use scene_file::{SceneFile, read_text};
 use serde::Serialize;
 use std::path::Path;
-
-/// Largest difference of the norm, in norms of its subgradients, and of the error, in values of Θ, that is rounding.
-const MAX_ROUNDING: f64 = 1e-8;
 
 /// Largest certificate file, bytes.
 const LARGEST_FILE: u64 = 256 << 20;
 
 /// Fields on which a certificate does not depend.
 const LEFT_OUT: [&str; 6] = ["name", "mesh.subdomains", "solver", "optimizer", "output", "surface.start"];
-
-/// A number of the certificate, and the same number computed again.
-#[derive(Debug, Serialize)]
-struct Number {
-    recorded: f64,
-    recomputed: f64,
-    /// Largest difference that counts as rounding.
-    rounding: f64,
-    agrees: bool,
-}
-
-impl Number {
-    fn new(recorded: f64, recomputed: f64, rounding: f64) -> Self {
-        Self { recorded, recomputed, rounding, agrees: (recorded - recomputed).abs() <= rounding }
-    }
-}
 
 /// The keys of the JSON of `recheck`.
 #[derive(Debug, Serialize)]
@@ -56,51 +38,10 @@ struct RecheckJson {
     /// Differences of the cuts from those that outputs, Jacobian and pressure measure give, where the composite model
     /// proved the point stationary.
     composite: Option<ProofCheck>,
-    /// The limit of the peak pressure, where the scene has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    limit: Option<LimitCheck>,
+    /// The limits, where the scene has some.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    limits: Vec<LimitCheck>,
     agrees: bool,
-}
-
-/// The limit of the peak pressure in a certificate.
-#[derive(Debug, Serialize)]
-struct LimitCheck {
-    /// Peak pressure minus limit, MPa: recorded, and computed from the pressures behind the composite proof where there
-    /// is one.
-    excess: Number,
-    multiplier: f64,
-    /// Largest difference of the linearizations at the point from rows of the Jacobian of the pressures, relative to
-    /// their sizes.
-    cuts: f64,
-    agrees: bool,
-}
-
-impl LimitCheck {
-    /// The limit in the certificate; none if the certificate does not hold this one limit.
-    fn new(certificate: &Certificate, limit: f64) -> Option<Self> {
-        let proof = certificate.constraints.as_ref().filter(|proof| proof.kinds == [ConstraintKind::Nonsmooth])?;
-        let recorded = *proof.values.iter().next()?;
-        let pressures = certificate.composite.as_ref().map(|composite| &composite.outputs);
-        let recomputed = pressures.map_or(recorded, |pressures| pressures.max() - limit);
-        let excess = Number::new(recorded, recomputed, MAX_ROUNDING * limit);
-        let cuts = certificate.composite.as_ref().map_or(0.0, |composite| {
-            let at_point = proof.cuts.iter().filter(|cut| cut.point == certificate.point);
-            at_point.map(|cut| nearest_row((cut.value, &cut.subgradient), composite, limit)).fold(0.0, f64::max)
-        });
-        let agrees = excess.agrees && cuts <= MAX_ROUNDING;
-        Some(Self { excess, multiplier: proof.multipliers().sum(), cuts, agrees })
-    }
-}
-
-/// The relative difference of a linearization at the point from that of the node that is nearest to it.
-fn nearest_row((value, subgradient): (f64, &Vector), composite: &CompositeProof, limit: f64) -> f64 {
-    let size = subgradient.norm().max(f64::MIN_POSITIVE);
-    let rows = composite.outputs.iter().zip(composite.jacobian.row_iter());
-    rows.map(|(pressure, row)| {
-        let slope = (row.transpose() - subgradient).norm() / size;
-        slope.max((pressure - limit - value).abs() / limit)
-    })
-    .fold(f64::INFINITY, f64::min)
 }
 
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
@@ -123,7 +64,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     };
     let check = certificate.recheck(problem.admissible.polyhedron()).map_err(foreign)?;
     // Functions of the displacements have no composite model, and their certificates no proof of this kind.
-    let cost = ContactCost::new(measure, &problem)?;
+    let cost = ContactCost::new(measure, &case.limits, &problem)?;
     let proof = match (certificate.composite.as_ref(), &cost) {
         (Some(proof), ContactCost::Pressure(cost)) => Some(proof.recheck(&certificate, cost).map_err(foreign)?),
         (Some(_), ContactCost::Field(_)) => {
@@ -135,15 +76,13 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let mut result = RecheckJson::new(&certificate, &check, certificate.point == controls);
     result.agrees &= proof.is_none_or(|proof| proof.largest() <= MAX_ROUNDING);
     result.composite = proof;
-    if let Some(limit) = case.peak_limit {
-        let none = || {
-            let words = "the certificate does not hold the limit of the peak pressure of its scene";
-            Failure::Computation(format!("{}: {words}", folder.display()))
-        };
-        let limit = LimitCheck::new(&certificate, limit).ok_or_else(none)?;
-        result.agrees &= limit.agrees;
-        result.limit = Some(limit);
-    }
+    let checks =
+        if case.limits.is_empty() { Some(vec![]) } else { LimitCheck::all(&certificate, &case.limits, &problem)? };
+    result.limits = checks.ok_or_else(|| {
+        let words = "the certificate does not hold the limits of its scene";
+        Failure::Computation(format!("{}: {words}", folder.display()))
+    })?;
+    result.agrees &= result.limits.iter().all(|limit| limit.agrees);
     let text = arguments.printed(result.text(), json(&result)?);
     if result.agrees {
         return Ok(text);
@@ -197,7 +136,7 @@ impl RecheckJson {
             violation: check.violation,
             point_equals_controls,
             composite: None,
-            limit: None,
+            limits: vec![],
         }
     }
 }
@@ -212,7 +151,7 @@ impl RecheckJson {
             line("certificate", verdict(self.agrees)).trim_end().to_owned(),
             line("point", &format!("{equal} controls.json")).trim_end().to_owned(),
         ];
-        let number = |name, number: &Number| {
+        let number = |name: &str, number: &Number| {
             let Number { recorded, recomputed, rounding, agrees } = *number;
             let values =
                 vec![recorded.into(), recomputed.into(), Value::Rough(rounding), verdict(agrees).to_owned().into()];
@@ -220,9 +159,11 @@ impl RecheckJson {
         };
         let mut numbers =
             vec![number("aggregate norm", &self.aggregate_norm), number("aggregate error", &self.aggregate_error)];
-        numbers.extend(self.limit.iter().map(|limit| number("peak pressure − limit, MPa", &limit.excess)));
+        numbers.extend(
+            self.limits.iter().map(|limit| number(&format!("{} beyond its limit", limit.quantity), &limit.excess)),
+        );
         let columns = ["recorded", "recomputed", "rounding", ""].map(str::to_owned).into();
-        let rough = |name, value| Fact::new("", name, Value::Rough(value), "");
+        let rough = |name: &str, value| Fact::new("", name, Value::Rough(value), "");
         let mut rest = vec![
             Fact::new("", "multipliers, point", admissible.to_owned(), ""),
             rough("multiplier defect", self.multiplier_defect),
@@ -234,9 +175,9 @@ impl RecheckJson {
             rest.push(rough("pressure measure", *outer));
             rest.push(rough("cuts", *cuts));
         }
-        if let Some(LimitCheck { multiplier, cuts, .. }) = &self.limit {
-            rest.push(Fact::new("", "multiplier of the limit", *multiplier, ""));
-            rest.push(rough("linearizations of the limit", *cuts));
+        for LimitCheck { quantity, multiplier, cuts, .. } in &self.limits {
+            rest.push(Fact::new("", &format!("multiplier of the {quantity}"), *multiplier, ""));
+            rest.push(rough(&format!("linearizations of the {quantity}"), *cuts));
         }
         let numbers = Group { columns, ..Group::new("", numbers) };
         Facts { lead, groups: vec![numbers, Group::new("", rest)] }.text(true)

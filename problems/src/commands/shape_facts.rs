@@ -14,18 +14,14 @@ pub fn peak_pressure(shapes: &[&SolvedShape]) -> Fact {
     row("peak_pressure", "peak contact pressure", "MPa", shapes, &|shape| shape.peak_pressure.into())
 }
 
-/// Whether the shapes keep the limit of the peak pressure; nothing without one.
-pub fn limit(shapes: &[&SolvedShape]) -> Option<Fact> {
-    let words = |shape: &&SolvedShape| {
-        let (limit, above) = (number(shape.peak_limit?), shape.above_limit()?);
-        let kept = above == 0.0;
-        Some(
-            if kept { format!("{limit} MPa, kept") } else { format!("{limit} MPa, VIOLATED by {} MPa", number(above)) }
-                .into(),
-        )
+/// Whether the shapes keep their limits: a row for each.
+pub fn limits(shapes: &[&SolvedShape]) -> Vec<Fact> {
+    let count = shapes.first().map_or(0, |shape| shape.limits.len());
+    let row = |index: usize| {
+        let values: Vec<Value> = shapes.iter().map(|shape| shape.limits[index].verdict()).collect();
+        Fact::row("", &format!("limit: {}", shapes[0].limits[index].words()), values, "")
     };
-    let values = shapes.iter().map(words).collect::<Option<Vec<Value>>>()?;
-    Some(Fact::row("", "limit of the peak pressure", values, ""))
+    (0..count).map(row).collect()
 }
 
 /// Θ of the shapes, and the root of a sum of powers of pressures, a pressure that can be compared.
@@ -116,13 +112,16 @@ pub fn found(objective: &ContactObjective, [start, end]: [&SolvedShape; 2]) -> S
         _ => ("objective Θ".into(), [start.value, end.value], raised(&objective.unit())),
     };
     let peaks = [start.peak_pressure, end.peak_pressure];
-    if let (Some(limit), false) = (end.peak_limit, end.keeps_limit()) {
-        let peak = number(end.peak_pressure);
-        return format!("NO shape within the limit was found: peak pressure {peak} MPa, limit {} MPa", number(limit));
+    let violated = end.limits.iter().filter(|limit| limit.excess() > 0.0);
+    let violated: Vec<String> = violated
+        .map(|limit| format!("{} is {} instead of {}", limit.limit.quantity.name(), number(limit.value), limit.words()))
+        .collect();
+    if !violated.is_empty() {
+        return format!("NO shape within the limits was found: {}", violated.join("; "));
     }
-    if !start.keeps_limit() {
+    if !start.keeps_limits() {
         let (peak, value) = (changed(peaks, "MPa"), changed(values, &of));
-        return format!("a shape within the limit was found: peak pressure {peak}; {name} {value}");
+        return format!("a shape within the limits was found: peak pressure {peak}; {name} {value}");
     }
     if is_better(start.value, end.value) {
         let (peak, value) = (changed(peaks, "MPa"), changed(values, &of));

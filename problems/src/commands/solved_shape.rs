@@ -3,6 +3,7 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
+use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::plain_unit;
 use contact::communication::InProcess;
 use contact::contact_objective::ContactCost;
@@ -46,7 +47,7 @@ pub fn wanted(case: &Case) -> Wanted {
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
     let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
     let measure = case.measure(shape.problem())?;
-    Ok(ContactObjective::new(shape, measure)?)
+    Ok(ContactObjective::new(shape, measure, &case.limits)?)
 }
 
 /// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing
@@ -59,7 +60,7 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
         memory::check(&case.plan(wanted), &InProcess)?;
     }
     let problem = ContactProblem::new(case.scene.clone())?;
-    ContactCost::new(case.measure(&problem)?, &problem).map(|_| ())
+    ContactCost::new(case.measure(&problem)?, &case.limits, &problem).map(|_| ())
 }
 
 /// What a file of fields says of the objective.
@@ -78,12 +79,9 @@ pub struct SolvedShape {
     pub value: f64,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
-    /// The limit of the largest contact pressure, MPa, if there is one.
-    pub peak_limit: Option<f64>,
+    /// The limits with their quantities at the shape.
+    pub limits: Vec<LimitedValue>,
 }
-
-/// Share of a limit that counts as rounding.
-const LIMIT_ROUNDING: f64 = 1e-9;
 
 impl SolvedShape {
     /// Solves the contact problem of a shape.
@@ -91,23 +89,25 @@ impl SolvedShape {
         let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST)?;
         let value = objective.value(controls, &state);
         let peak_pressure = objective.pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Ok(Self { controls: controls.clone(), state, value, peak_pressure, peak_limit: objective.peak_limit() })
+        let values = objective.limited_values(controls, &state).into_iter();
+        let limits =
+            objective.limits().iter().zip(values).map(|(&limit, value)| LimitedValue { limit, value }).collect();
+        Ok(Self { controls: controls.clone(), state, value, peak_pressure, limits })
     }
 
-    /// By how much the largest contact pressure exceeds its limit, MPa, 0 up to rounding; none without a limit.
-    pub fn above_limit(&self) -> Option<f64> {
-        let above = |limit: f64| Some(self.peak_pressure - limit).filter(|above| *above > LIMIT_ROUNDING * limit);
-        self.peak_limit.map(|limit| above(limit).unwrap_or(0.0))
+    /// Whether all limits are kept.
+    pub fn keeps_limits(&self) -> bool {
+        self.limits.iter().all(|limit| limit.excess() == 0.0)
     }
 
-    /// Whether the limit, if there is one, is kept.
-    pub fn keeps_limit(&self) -> bool {
-        self.above_limit().is_none_or(|above| above == 0.0)
+    /// The largest violation of a limit over its bound, 0 if all are kept; none without limits.
+    pub fn limit_violation(&self) -> Option<f64> {
+        let shares = self.limits.iter().map(|limit| limit.excess() / limit.limit.bound.abs());
+        shares.reduce(f64::max)
     }
 
-    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the position of every contact node along its
-    /// normal, which
-    /// takes an adjoint, if it is asked for.
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the position of every contact node along
+    /// its normal, which takes an adjoint, if it is asked for.
     pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.solver().fields(&self.state)?;
         if sensitivities {

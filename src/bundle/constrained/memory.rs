@@ -46,8 +46,6 @@ pub(crate) struct Constraints {
     units: Vec<f64>,
     /// The largest |c_j|.
     largest: Vec<f64>,
-    /// The first |c_j| at a center that is not 0.
-    first: Vec<f64>,
     /// Whether linearizations prove c_j nonconvex.
     nonconvex: Vec<bool>,
     /// Σ σ_j |μ_j| of the last subproblem: how much the objective costs per unit of violation.
@@ -114,7 +112,6 @@ impl Constraints {
             kinds: kinds.to_vec(),
             units: vec![0.0; count],
             largest: vec![0.0; count],
-            first: vec![0.0; count],
             nonconvex: vec![false; count],
             penalty: slope,
             lowered_at: f64::INFINITY,
@@ -139,9 +136,6 @@ impl Constraints {
     fn measure(&mut self) {
         for (j, value) in self.center.evaluation.values.iter().enumerate() {
             self.largest[j] = self.largest[j].max(value.abs());
-            if self.first[j] == 0.0 {
-                self.first[j] = value.abs();
-            }
         }
     }
 
@@ -317,9 +311,9 @@ impl Constraints {
     /// bounds the size that it is compared with.
     fn tolerance(&self, j: usize, evaluation: &ConstraintEvaluation, point: &Vector) -> f64 {
         let terms: f64 = evaluation.jacobian.row(j).iter().zip(point.iter()).map(|(h, x)| (h * x).abs()).sum();
-        let first = self.first[j];
-        let size = if terms > 0.0 { terms.min(first) } else { first };
-        (TOLERANCE * size).max(ROUNDING * terms).max(f64::EPSILON * first)
+        let largest = self.largest[j];
+        let size = if terms > 0.0 { terms.min(largest) } else { largest };
+        (TOLERANCE * size).max(ROUNDING * terms).max(f64::EPSILON * largest)
     }
 
     /// The largest violation in tolerances: the point is feasible up to 1.

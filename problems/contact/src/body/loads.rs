@@ -220,9 +220,17 @@ fn face_forces<T: Scalar>(traction: &Traction, linear: Option<&Linear<T>>, posit
 }
 
 /// Visits the nodal forces of all loads of a body on the cells that `is_own` names.
-fn visit<T: Scalar>(body: &Body, is_own: impl Fn(u32) -> bool, x: &impl Positions<T>, mut add: impl Forces<T>) {
-    let mesh = &*body.mesh;
-    for load in &body.loads {
+fn visit<T: Scalar>(body: &Body, is_own: impl Fn(u32) -> bool, x: &impl Positions<T>, add: impl Forces<T>) {
+    visit_loads((&body.mesh, &body.loads), is_own, x, add);
+}
+
+fn visit_loads<T: Scalar>(
+    (mesh, loads): (&Mesh, &[Loaded]),
+    is_own: impl Fn(u32) -> bool,
+    x: &impl Positions<T>,
+    mut add: impl Forces<T>,
+) {
+    for load in loads {
         match load {
             Loaded::Faces(faces, traction) => {
                 let mut linear = None;
@@ -244,6 +252,26 @@ fn visit<T: Scalar>(body: &Body, is_own: impl Fn(u32) -> bool, x: &impl Position
             }
         }
     }
+}
+
+/// Σ|f_v| of some loads over the nodes of a mesh, N: what acts on it, roughly. Loads are called `body.loads[i]` in
+/// messages.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] for names that the mesh does not have, and for numbers and formulas without sense.
+pub fn load_size(mesh: &Mesh, loads: &[Load]) -> Result<f64, SceneError> {
+    let loaded = |(index, load): (usize, &Load)| Loaded::new(&format!("body.loads[{index}]"), load, mesh);
+    let loaded = loads.iter().enumerate().map(loaded).collect::<Result<Vec<_>, _>>()?;
+    let mut forces = vec![[0.0; 3]; mesh.node_count()];
+    visit_loads(
+        (mesh, &loaded),
+        |_| true,
+        &|node: u32| mesh.nodes()[node as usize],
+        |node, force: [f64; 3]| {
+            (0..3).for_each(|axis| forces[node as usize][axis] += force[axis]);
+        },
+    );
+    Ok(forces.iter().map(|f| f[0].hypot(f[1]).hypot(f[2])).sum())
 }
 
 /// The loads of a body at a shape: nodes with forces (N), several per node.

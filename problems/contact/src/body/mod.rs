@@ -19,6 +19,7 @@ pub(crate) mod shape_sensitivity;
 mod support;
 
 pub use body::{Body, Ends};
+pub use loads::load_size;
 pub(crate) use nodal_axes::NodalAxes;
 pub use piece::{Patterns, Piece, PiecePattern};
 pub use rigid_motions::{MOTIONS, Place};

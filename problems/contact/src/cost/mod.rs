@@ -6,11 +6,13 @@
 //! ```
 
 mod field;
+mod limit;
 mod outputs;
 mod pressure;
 mod region;
 
 pub use field::{FieldCost, FieldGradient, FieldMeasure};
+pub use limit::{Limit, LimitSide, LimitedQuantity, VolumeLimits};
 pub use outputs::PressureOutputs;
 pub use pressure::{ContactAreas, NodeWeight, PressureCost, PressureMeasure, PressureRoot};
 pub use region::{Region, RegionCells};
@@ -20,8 +22,6 @@ pub use region::{Region, RegionCells};
 pub enum Measure {
     /// A function of the contact pressures.
     Pressure(PressureMeasure),
-    /// A function of the contact pressures where the largest pressure is at most this limit, MPa.
-    LimitedPressure(PressureMeasure, f64),
     /// A function of the displacements.
     Field(FieldMeasure),
 }

@@ -2,7 +2,8 @@
 
 use crate::body::mesh::{BlockFace, Grid, Mesh};
 use crate::error::SceneError;
-use crate::scene::{BodyScene, ContactScene, CounterSurface, Held, NormalKind};
+use crate::names::find;
+use crate::scene::{BodyScene, ContactScene, CounterSurface, Held, LoadKind, NormalKind};
 use crate::shape::{HeightShape, ShapeBounds, ShapeScene};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -244,15 +245,22 @@ impl Scene {
 
     /// Checks the supports and loads of a block, whose contact face takes none of them.
     fn validate_block(name: &str, body: &BodyScene, contact: BlockFace) -> Result<(), SceneError> {
-        let not_on_contact = |part: &str, face: &str| {
-            let (field, value) = (format!("{name}.{part}: face"), format!("\"{face}\""));
-            SceneError::require(face != contact.name(), field, value, "any face but the contact boundary")
+        let check = |part: &str, index: usize, face: &str| {
+            let field = format!("{name}.{part}[{index}].face");
+            find(&field, face, BlockFace::ALL.iter().map(|face| face.name()))?;
+            let allowed = "any face but the contact boundary";
+            SceneError::require(face != contact.name(), field, format!("\"{face}\""), allowed)
         };
-        body.loads
-            .iter()
-            .filter_map(|load| load.place.as_deref())
-            .try_for_each(|face| not_on_contact("loads", face))?;
-        body.supports.iter().try_for_each(|support| not_on_contact("supports", &support.face))?;
+        for (index, load) in body.loads.iter().enumerate() {
+            match (&load.kind, load.place.as_deref()) {
+                // It names a volume.
+                (LoadKind::BodyForce(_), _) | (_, None) => {}
+                (_, Some(face)) => check("loads", index, face)?,
+            }
+        }
+        for (index, support) in body.supports.iter().enumerate() {
+            check("supports", index, &support.face)?;
+        }
         let vertical = |face: &str| ![BlockFace::Bottom, BlockFace::Top].iter().any(|other| other.name() == face);
         let holds = |held: &Held| matches!(held, Held::Components([_, _, true]));
         SceneError::require(

@@ -73,8 +73,6 @@ pub struct LatticeShape {
     pub displacement: [f64; 2],
     /// Bounds of the displacement of nodes.
     pub node_bounds: Vec<NodeBound>,
-    /// Least and largest volume of the body over that at the start.
-    pub volume: Option<[f64; 2]>,
 }
 
 /// A bound of a component of the displacement of nodes by the shape.
@@ -179,16 +177,6 @@ impl LatticeShape {
                     SceneError::require(least < largest, "lattice.ranges", value, "the smaller number first")?;
                 }
             }
-        }
-        if let Some([least, largest]) = self.volume {
-            let valid = 0.0 <= least && least <= largest && largest.is_finite() && largest > 0.0;
-            let value = format!("[{least}, {largest}]");
-            SceneError::require(
-                valid,
-                "lattice.volume",
-                value,
-                "the smaller number first, over the volume at the start",
-            )?;
         }
         let [least, largest] = self.displacement;
         let value = format!("[{least}, {largest}]");

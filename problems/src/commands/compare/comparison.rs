@@ -2,6 +2,7 @@
 
 use crate::commands::facts::{Fact, Facts, Group};
 use crate::commands::failure::Failure;
+use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::{number, raised, rounded};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::ending;
@@ -87,15 +88,10 @@ impl Comparison<'_> {
             row("shapes.peak_pressure_without_friction", "peak pressure", 1, "MPa", |shape| shape.peak_pressure),
             row("shapes.objective_without_friction", "objective Θ", 1, &unit, |shape| shape.value),
         ];
-        let above = models[0].map(|shape| shape.above_limit().into());
-        let limited = models[0].iter().all(|shape| shape.peak_limit.is_some());
-        if limited {
-            shapes.push(Fact::row(
-                "shapes.limit_violation_with_friction",
-                "peak above its limit, with friction",
-                above.into(),
-                "MPa",
-            ));
+        let violations = models[0].map(|shape| shape.limit_violation().into());
+        if models[0].iter().all(|shape| !shape.limits.is_empty()) {
+            let name = "largest violation of a limit over its bound, with friction";
+            shapes.push(Fact::row("shapes.limit_violation_with_friction", name, violations.into(), ""));
         }
         let columns = names.map(str::to_owned).into();
         let shapes = Group { title: "Shapes in both models", columns, facts: shapes, words: String::new() };
@@ -140,17 +136,16 @@ impl Comparison<'_> {
         sentences
     }
 
-    /// A sentence for each run that found no shape within the limit.
+    /// A sentence for each run that found no shape within the limits.
     fn violated(&self) -> Vec<String> {
         let ends = [("with", &self.own[0][1]), ("without", &self.own[1][1])];
-        let violated = ends.into_iter().filter(|(_, shape)| !shape.keeps_limit());
         let sentence = |(name, shape): (&str, &SolvedShape)| {
-            let [peak, above] = [shape.peak_pressure, shape.above_limit().unwrap_or(0.0)].map(number);
-            format!(
-                "The run {name} friction found NO shape within the limit: its peak pressure {peak} MPa is {above} MPa above."
-            )
+            let violated = shape.limits.iter().filter(|limit| limit.excess() > 0.0);
+            let violated: Vec<String> = violated.map(LimitedValue::words).collect();
+            (!violated.is_empty())
+                .then(|| format!("The run {name} friction found NO shape within the limits: {}.", violated.join("; ")))
         };
-        violated.map(sentence).collect()
+        ends.into_iter().filter_map(sentence).collect()
     }
 
     /// The sentence where the objective of the shape found with friction is zero up to rounding.

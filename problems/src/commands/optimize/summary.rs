@@ -113,8 +113,8 @@ impl Ended<'_> {
         let scene = &objective.solver().problem().scene;
         let lead = vec![format!("{}: {}", scene.name, shape_facts::found(objective, shapes)), proof(report)];
         let mut result = vec![shape_facts::peak_pressure(&shapes)];
-        result.extend(shape_facts::limit(&shapes));
-        result.extend(self.limit()?);
+        result.extend(shape_facts::limits(&shapes));
+        result.extend(self.limits()?);
         result.extend(shape_facts::objective(objective, &shapes).into_iter().map(Fact::without_key));
         result.extend(shape_facts::contact_areas(objective, &shapes));
         result.extend([
@@ -138,35 +138,54 @@ impl Ended<'_> {
         Ok(Facts { lead, groups })
     }
 
-    /// What the limit of the peak pressure costs; nothing without one.
-    fn limit(&self) -> Result<Vec<Fact>, Failure> {
+    /// What the limits cost; nothing without one.
+    fn limits(&self) -> Result<Vec<Fact>, Failure> {
         let MeshRun { report, objective, .. } = self.last;
-        let (Some(found), Some(at_most)) = (report.constraints.first(), objective.peak_limit()) else {
-            return Ok(vec![]);
-        };
         let [start, end] = self.shapes;
-        let limit = json!({
-            "quantity": "peak-pressure",
-            "at_most": at_most,
-            "start": start.peak_pressure,
-            "end": end.peak_pressure,
-            "violation": end.above_limit(),
-            "satisfied": found.satisfied,
-            "active": found.multiplier > 0.0,
-            "multiplier": found.multiplier,
-            "penalty": report.penalty,
-        });
-        let unit = raised(&objective.unit());
-        let words = match (found.satisfied, found.multiplier > 0.0) {
-            (false, _) => "violated".to_owned(),
-            (true, true) => format!("active: one MPa more would bring {} {unit}", number(found.multiplier)),
-            (true, false) => "not active".to_owned(),
-        };
-        Ok(vec![
-            Fact::object("limits", "at the shape found, the limit is", &[limit], words)?,
-            Fact::new("", "penalty weight of the limit", report.penalty.map_or(Value::Missing, Value::Rough), "")
-                .detail(),
-        ])
+        let (mut keys, mut facts) = (Vec::new(), Vec::new());
+        for ((found, start), end) in report.constraints.iter().zip(&start.limits).zip(&end.limits) {
+            let active = found.multiplier != 0.0;
+            let mut own = end.keys();
+            own.extend(
+                [
+                    ("start", json!(start.value)),
+                    ("end", json!(end.value)),
+                    ("violation", json!(end.excess())),
+                    ("satisfied", json!(found.satisfied)),
+                    ("active", json!(active)),
+                    ("multiplier", json!(found.multiplier)),
+                    ("penalty", json!(report.penalty)),
+                ]
+                .map(|(key, value)| (key.to_owned(), value)),
+            );
+            let quantity = end.limit.quantity;
+            let unit = if quantity.unit().is_empty() {
+                "1 (in the ratio)".into()
+            } else {
+                format!("one {}", raised(quantity.unit()))
+            };
+            let words = match (found.satisfied, active) {
+                (false, _) => "violated".to_owned(),
+                (true, true) => {
+                    let gain = number(found.multiplier.abs());
+                    format!("active: {unit} more room would bring {gain} {}", raised(&objective.unit()))
+                }
+                (true, false) => "not active".to_owned(),
+            };
+            facts.push(Fact::new(
+                "",
+                &format!("at the shape found, the limit of the {} is", quantity.name()),
+                words,
+                "",
+            ));
+            keys.push(own);
+        }
+        if !keys.is_empty() {
+            facts.push(Fact::json("limits", &keys)?);
+            let penalty = report.penalty.map_or(Value::Missing, Value::Rough);
+            facts.push(Fact::new("", "penalty weight of the limits", penalty, "").detail());
+        }
+        Ok(facts)
     }
 
     /// The facts of several runs.

@@ -48,7 +48,7 @@ pub struct Solved {
     pub objective_unit: String,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
-    /// By how much it exceeds its limit, MPa, where there is one.
+    /// The largest violation of a limit over its bound, where there are limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_violation: Option<f64>,
     /// Tributary area of the closed contact nodes, mm².
@@ -236,7 +236,7 @@ fn optimum(
         most_evaluations: evaluations().max().unwrap_or(0),
         termination: chosen.report.termination.to_string(),
         confirmed: is_proved(&chosen.report),
-        had_to_move: !first.keeps_limit(),
+        had_to_move: !first.keeps_limits(),
         can_continue: run.can_continue(),
     };
     let objective = chosen.report.value;
@@ -255,7 +255,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
         objective: shape.value,
         objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
-        limit_violation: shape.above_limit(),
+        limit_violation: shape.limit_violation(),
         contact_area: shape.state.rows.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),

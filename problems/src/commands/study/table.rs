@@ -120,8 +120,8 @@ fn run<V: Into<Value>>(solved: &Solved, value: fn(&Optimized) -> V) -> Value {
     solved.optimization.as_ref().map_or(Value::Missing, |run| value(run).into())
 }
 
-/// The column of the limit.
-const LIMIT_VIOLATION: &str = "limit_violation_MPa";
+/// The column of the limits.
+const LIMIT_VIOLATION: &str = "limit_violation";
 
 const COLUMNS: [Column; 15] = [
     of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
@@ -129,7 +129,7 @@ const COLUMNS: [Column; 15] = [
     column("objective", "objective", |row| row.objective.into()),
     column("objective_unit", "", |row| row.objective_unit.clone().into()),
     column("peak_pressure_MPa", "peak, MPa", |row| row.peak_pressure.into()),
-    column(LIMIT_VIOLATION, "above limit, MPa", |row| row.limit_violation.into()),
+    column(LIMIT_VIOLATION, "beyond limits, share", |row| row.limit_violation.into()),
     column("contact_area_mm2", "contact area, mm²", |row| row.contact_area.into()),
     column("total_normal_force_N", "", |row| row.total_normal_force.into()),
     column("open", "open", |row| row.status.open.into()),

@@ -1,0 +1,53 @@
+//! Limits with the values of their quantities at a shape.
+
+use crate::commands::facts::Value;
+use crate::commands::numbers::{number, raised};
+use contact::cost::{Limit, LimitSide};
+use serde_json::{Map, json};
+
+/// A limit with its quantity at a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LimitedValue {
+    /// The limit.
+    pub limit: Limit,
+    /// The quantity, in its unit.
+    pub value: f64,
+}
+
+impl LimitedValue {
+    /// By how much the value is beyond the bound; 0 up to rounding.
+    pub fn excess(&self) -> f64 {
+        self.limit.excess(self.value)
+    }
+
+    /// The limit in words: `peak-pressure at most 3400 MPa`.
+    pub fn words(&self) -> String {
+        let Limit { quantity, side, bound } = self.limit;
+        let side = match side {
+            LimitSide::AtMost => "at most",
+            LimitSide::AtLeast => "at least",
+            LimitSide::Equal => "equal to",
+        };
+        format!("{} {side} {} {}", quantity.name(), number(bound), raised(quantity.unit())).trim_end().to_owned()
+    }
+
+    /// The value, and whether the limit is kept.
+    pub fn verdict(&self) -> Value {
+        let value = number(self.value);
+        match self.excess() {
+            0.0 => format!("{value}, kept").into(),
+            excess => format!("{value}, VIOLATED by {}", number(excess)).into(),
+        }
+    }
+
+    /// The keys of the limit in JSON.
+    pub fn keys(&self) -> Map<String, serde_json::Value> {
+        let Limit { quantity, side, bound } = self.limit;
+        let side = match side {
+            LimitSide::AtMost => "at_most",
+            LimitSide::AtLeast => "at_least",
+            LimitSide::Equal => "equal_to",
+        };
+        Map::from_iter([("quantity".to_owned(), json!(quantity.name())), (side.to_owned(), json!(bound))])
+    }
+}
