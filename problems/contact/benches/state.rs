@@ -46,7 +46,7 @@ fn print(size: &str, what: &str, seconds: f64, unit: f64) {
 fn derivatives(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     let (problem, start, accuracy) = (shape.problem(), shape.start(), Accuracy::relative(1e-8)?);
     let state = shape.solve(&start, None, accuracy)?;
-    let dual = Vector::from_element(problem.boundary.dual_dimension(), 1.0);
+    let dual = Vector::from_element(problem.boundary.row_count, 1.0);
     let unit = |control: usize| (0..start.len()).map(|i| f64::from(u8::from(i == control))).collect::<Vec<f64>>();
     let changes: Vec<Vec<f64>> = (0..start.len()).map(|control| problem.height_map.heights(&unit(control))).collect();
     let cold = median(|| shape.solve(&start, None, accuracy));

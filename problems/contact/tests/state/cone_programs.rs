@@ -1,7 +1,7 @@
 //! The last resort of direct condensation, driven alone: cone programs lead to the states that Newton's method finds.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, hertz, signorini};
@@ -71,9 +71,9 @@ fn the_last_resort_finds_what_continuation_loses() {
         friction: 1.5489828758814062,
         lower: BodyScene {
             material: Material::new(2.625089606217722e5, 4.9751755389752494e-1).unwrap(),
-            supports: vec![Support { face: Face::X1Min, components: [true, true, false] }],
+            supports: vec![Support::new(BlockFace::X1Min, [true, true, false])],
             loads: vec![Load {
-                face: Face::Bottom,
+                face: BlockFace::Bottom,
                 traction: [-1.3464520863463144e-3, 4.64168935388694e-3, 1.2777216699740348e-2],
             }],
         },

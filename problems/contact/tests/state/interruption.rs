@@ -18,7 +18,7 @@ fn states_and_their_derivatives_are_interrupted() {
         let state = solve().unwrap();
         let again = watched(|| false, solve).unwrap();
         assert_eq!(state.forces.normal, again.forces.normal, "{kind:?}");
-        let dual = Vector::from_element(shape.problem().boundary.dual_dimension(), 1.0);
+        let dual = Vector::from_element(shape.problem().boundary.row_count, 1.0);
         let adjoint = watched(|| true, || shape.coderivative(&start, &state, &dual));
         assert!(matches!(adjoint, Err(OracleError::Interrupted)), "{kind:?}");
         let tangents = watched(|| true, || shape.linearize(&start, &state, Accuracy::TIGHTEST));

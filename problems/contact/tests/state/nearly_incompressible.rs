@@ -1,7 +1,7 @@
 //! Nearly incompressible bodies take about as many products with F as compressible ones, and both solvers agree.
 
 use contact::body::elasticity::{Formulation, Material};
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::linear::vector::{add_scaled, norm};
 use contact::plausibility::Warning;
@@ -77,7 +77,7 @@ fn layer(ratio: f64, formulation: Formulation) -> Scene {
     let mut scene =
         Scene { mesh: [12, 12, 4], subdomains: [2, 2, 1], friction: 0.1, start_height: 1.0, ..hertz().unwrap() };
     scene.lower.material = Material::new(100.0, ratio).unwrap().with_formulation(formulation);
-    for support in scene.lower.supports.iter_mut().filter(|support| support.face == Face::Bottom) {
+    for support in scene.lower.supports.iter_mut().filter(|support| support.face == BlockFace::Bottom) {
         *support = Support { components: [true; 3], ..*support };
     }
     scene.counter_surface = CounterSurface::Sphere { apex: 1.0, radius: 100.0, centre: [0.0; 2] };
@@ -85,7 +85,7 @@ fn layer(ratio: f64, formulation: Formulation) -> Scene {
     scene.bounds.volume = [80.0, 120.0];
     if let Some(upper) = &mut scene.upper {
         upper.top = 8.0;
-        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
     }
     scene
 }

@@ -1,6 +1,6 @@
 //! Independent paths give the same state: TFETI against direct condensation, several tearings and numbers of threads.
 
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
@@ -114,7 +114,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (shape, state) = solve(hertz().unwrap(), SolverKind::Newton, 6, 2);
-            let dual = Vector::from_fn(shape.problem().boundary.dual_dimension(), |i, _| (0.7 * i as f64).cos());
+            let dual = Vector::from_fn(shape.problem().boundary.row_count, |i, _| (0.7 * i as f64).cos());
             let control = bent(&shape.problem().scene);
             let slope = shape.coderivative(&control, &state, &dual).unwrap();
             (state.forces.normal.clone(), slope)
@@ -147,8 +147,8 @@ fn warm_start_ends_at_the_same_state() {
 #[test]
 fn a_motion_without_jumps_changes_no_force() {
     let mut scene = Scene { friction: 0.0, ..signorini().unwrap() };
-    scene.lower.supports = vec![Support { face: Face::Bottom, components: [true, false, true] }];
-    scene.lower.loads = vec![Load { face: Face::X2Max, traction: [0.0, 0.0, 3000.0] }];
+    scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true, false, true])];
+    scene.lower.loads = vec![Load::traction(BlockFace::X2Max, [0.0, 0.0, 3000.0])];
     scene.counter_surface = CounterSurface::Sphere { apex: 100.1, radius: 1e4, centre: [0.0; 2] };
     let (_, torn) = solve(scene.clone(), SolverKind::Newton, 4, 2);
     let (_, direct) = solve(scene, SolverKind::Direct, 4, 2);

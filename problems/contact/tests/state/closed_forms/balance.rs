@@ -2,7 +2,7 @@
 
 use super::setting::{ALL, block, load, solve, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody, hertz, signorini};
 use nonsmooth::{Accuracy, StateSolver};
@@ -17,8 +17,8 @@ fn plate() -> Scene {
     let mut scene = block([10.0; 2], 10.0, [4; 3], material, CounterSurface::Plane { height: 10.0 });
     scene.subdomains = [2; 3];
     scene.friction = 0.4;
-    scene.lower.supports = vec![support(Face::Bottom, ALL)];
-    let loads = vec![load(Face::Top, [0.05, -0.03, -1.0]), load(Face::X1Max, [0.02, 0.01, -0.1])];
+    scene.lower.supports = vec![support(BlockFace::Bottom, ALL)];
+    let loads = vec![load(BlockFace::Top, [0.05, -0.03, -1.0]), load(BlockFace::X1Max, [0.02, 0.01, -0.1])];
     scene.upper = Some(UpperBody { body: BodyScene { material, supports: vec![], loads }, top: 20.0 });
     scene
 }
@@ -93,7 +93,7 @@ fn bodies_that_just_touch_without_a_load_have_no_forces_and_no_displacements() {
         block([20.0; 2], 20.0, [4; 3], material, CounterSurface::Plane { height: 20.0 * (1.0 - 2.0 * f64::EPSILON) });
     scene.subdomains = [2; 3];
     scene.friction = 0.3;
-    scene.lower.supports = vec![support(Face::Bottom, ALL)];
+    scene.lower.supports = vec![support(BlockFace::Bottom, ALL)];
     let kinds = [SolverKind::Auto, SolverKind::Newton, SolverKind::Direct, SolverKind::AugmentedLagrangian];
     for kind in kinds {
         let (shape, state) = solve(&scene, kind);

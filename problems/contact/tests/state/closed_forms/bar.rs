@@ -8,7 +8,7 @@
 
 use super::setting::{SECOND, block, load, solve, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure};
 use contact::equilibrium::ContactStatus;
@@ -28,9 +28,9 @@ fn bar(bricks: usize) -> Scene {
     let material = Material::new(MODULUS, 0.0).unwrap();
     let mut scene = block([LENGTH, WIDTH], HEIGHT, [bricks, 1, 1], material, CounterSurface::Plane { height: HEIGHT });
     scene.friction = FRICTION;
-    scene.lower.supports = vec![support(Face::X2Min, SECOND), support(Face::X2Max, SECOND)];
+    scene.lower.supports = vec![support(BlockFace::X2Min, SECOND), support(BlockFace::X2Max, SECOND)];
     let pull = FRICTION * PRESSURE * SLIP_LENGTH / HEIGHT;
-    scene.lower.loads = vec![load(Face::Bottom, [0.0, 0.0, PRESSURE]), load(Face::X1Max, [pull, 0.0, 0.0])];
+    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE]), load(BlockFace::X1Max, [pull, 0.0, 0.0])];
     scene
 }
 

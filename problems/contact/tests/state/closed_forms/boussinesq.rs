@@ -6,7 +6,7 @@
 
 use super::setting::{FIRST, SECOND, THIRD, block, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::direct::CondensationPattern;
 use contact::equilibrium::ContactProblem;
 use contact::scene::CounterSurface;
@@ -22,7 +22,7 @@ fn fitted(bricks: usize) -> (f64, f64) {
     let material = Material::new(MODULUS, POISSON).unwrap();
     let mut scene = block([SIDE; 2], SIDE, [bricks; 3], material, CounterSurface::Plane { height: SIDE });
     scene.lower.supports =
-        vec![support(Face::X1Min, FIRST), support(Face::X2Min, SECOND), support(Face::Bottom, THIRD)];
+        vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
     let problem = ContactProblem::new(scene).unwrap();
     let pattern = CondensationPattern::new(&problem.grid, &problem.scene.lower, bricks).unwrap();
     let body = pattern.condense(&problem.lower_block(&[SIDE; 4]).unwrap(), &problem.scene.lower).unwrap();

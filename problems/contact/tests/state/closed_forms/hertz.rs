@@ -7,7 +7,7 @@
 
 use super::setting::{FIRST, SECOND, THIRD, block, pressures, solve, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::scene::{CounterSurface, Scene};
 use std::f64::consts::PI;
@@ -23,7 +23,7 @@ fn indented(bricks: usize, depth: f64) -> Scene {
     let mut scene = block([SIDE, SIDE], SIDE, [bricks; 3], material, sphere);
     scene.subdomains = [2; 3];
     scene.lower.supports =
-        vec![support(Face::X1Min, FIRST), support(Face::X2Min, SECOND), support(Face::Bottom, THIRD)];
+        vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
     scene
 }
 

@@ -1,7 +1,7 @@
 //! What Θ, ξ and the status must not notice: the unit of force, and the hand of a mirrored shape.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
@@ -84,7 +84,7 @@ fn mirrored(control: &Vector, swap: bool) -> Vector {
 fn a_mirrored_shape_has_the_mirrored_subgradient() {
     let mut other_hand = hertz().unwrap();
     let upper = other_hand.upper.as_mut().unwrap();
-    upper.body.loads[1] = Load { face: Face::X2Max, traction: [0.0, 500.0, -2000.0] };
+    upper.body.loads[1] = Load::traction(BlockFace::X2Max, [0.0, 500.0, -2000.0]);
     // The obstacle of Signorini's example is even about x₂ = b/2; the sphere does not know x₁ from x₂.
     let cases = [(signorini().unwrap(), signorini().unwrap(), false), (hertz().unwrap(), other_hand, true)];
     for (mut scene, mut image, swap) in cases {

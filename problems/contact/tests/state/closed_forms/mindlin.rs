@@ -9,7 +9,7 @@
 
 use super::setting::{ALL, SECOND, THIRD, block, load, pressures, solve, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::ContactStatus;
 use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody};
@@ -23,10 +23,10 @@ fn pushed(bricks: usize, traction: f64) -> Scene {
     let mut scene = block([2.0 * SIDE, SIDE], SIDE, [2 * bricks, bricks, bricks], material, sphere);
     scene.subdomains = [4, 2, 2];
     scene.friction = FRICTION;
-    let symmetry = support(Face::X2Min, SECOND);
-    scene.lower.supports = vec![symmetry, support(Face::Bottom, ALL)];
-    let supports = vec![symmetry, support(Face::Top, THIRD)];
-    let loads = vec![load(Face::Top, [traction, 0.0, 0.0])];
+    let symmetry = support(BlockFace::X2Min, SECOND);
+    scene.lower.supports = vec![symmetry, support(BlockFace::Bottom, ALL)];
+    let supports = vec![symmetry, support(BlockFace::Top, THIRD)];
+    let loads = vec![load(BlockFace::Top, [traction, 0.0, 0.0])];
     scene.upper = Some(UpperBody { body: BodyScene { material, supports, loads }, top: 2.0 * SIDE });
     scene
 }

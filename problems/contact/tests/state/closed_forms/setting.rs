@@ -1,7 +1,7 @@
 //! A block under a rigid obstacle, or under a second block, as a starting point for all cases.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support};
 use contact::shape::{ShapeBounds, SplineKind};
