@@ -7,8 +7,7 @@ use nonsmooth::{Accuracy, Coderivative, OracleError, OutputJacobian, StateSolver
 
 #[test]
 fn states_and_their_derivatives_are_interrupted() {
-    let mut scene = hertz().unwrap();
-    (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
+    let scene = hertz().unwrap().with_bricks([4; 3], [2; 3]);
     for kind in [SolverKind::Newton, SolverKind::Direct, SolverKind::Auto, SolverKind::AugmentedLagrangian] {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let start = shape.start();

@@ -1,6 +1,6 @@
 //! Objectives of a block that a plane presses on evenly: σ = p everywhere, σ_vM = p, and f·u = p² a b h/E.
 
-use super::setting::{FIRST, SECOND, block, load, support};
+use super::setting::{FIRST, SECOND, block, load, support, torn};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
@@ -16,8 +16,8 @@ const HEIGHT: f64 = 4.0;
 
 fn pressed() -> Scene {
     let material = Material::new(MODULUS, 0.31).unwrap();
-    let mut scene = block(SIZE, HEIGHT, [4, 2, 3], material, CounterSurface::Plane { height: HEIGHT });
-    scene.subdomains = [2, 1, 1];
+    let scene = block(SIZE, HEIGHT, [4, 2, 3], material, CounterSurface::Plane { height: HEIGHT });
+    let mut scene = torn(scene, [2, 1, 1]);
     scene.lower.supports = vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND)];
     scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
     scene
@@ -27,7 +27,7 @@ fn pressed() -> Scene {
 fn objectives_of_a_uniformly_pressed_block() {
     let area = SIZE[0] * SIZE[1];
     let whole = Region::WHOLE;
-    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0) };
+    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0), volume: None };
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(pressed(), kind).unwrap().with_displacements();
         let (problem, start) = (shape.problem(), shape.start());
