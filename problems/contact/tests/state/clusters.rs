@@ -50,7 +50,7 @@ fn results(scene: &Scene, clusters: Option<usize>, method: DualMethod) -> Vec<(&
 fn clusters_find_the_state_of_single_subdomains() {
     let cases = [
         (signorini(), [8; 3], [4; 3], 8, NEWTON),
-        (hertz(), [8; 3], [4; 3], 16, NEWTON),
+        (hertz(), [12; 3], [4; 3], 16, NEWTON),
         (hertz(), [6; 3], [2; 3], 2, NEWTON),
         (signorini(), [8; 3], [4, 2, 2], 8, DualMethod::Newton(Recycling::Off)),
         (hertz(), [6; 3], [3, 2, 1], 4, NEWTON),
