@@ -1,13 +1,13 @@
 //! Median times of what a state and its derivatives are made of: factorisation, product with F, state, adjoint,
-//! tangents for 36 changes of the heights.
+//! tangents for 36 changes of the controls.
 //!
 //! The scene is Signorini (the paper's Example 5.1) at the flat start: total FETI runs on 12³ bricks in 2³ subdomains
 //! and on 24³ bricks in 4³, direct condensation on 12³. The last column is relative: factorisations to one product with
 //! F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{ContactProblem, ContactSolver};
-use contact::scene::{Scene, signorini};
+use contact::equilibrium::{Configuration, ContactProblem, ContactSolver};
+use contact::scene::signorini;
 use contact::tfeti::{DualOperator, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::error::Error;
@@ -33,9 +33,8 @@ fn median<T>(mut call: impl FnMut() -> T) -> f64 {
     seconds[seconds.len() / 2]
 }
 
-fn shape(mesh: usize, subdomains: usize, kind: SolverKind) -> Result<ContactShape, Box<dyn Error>> {
-    let scene = Scene { mesh: [mesh; 3], subdomains: [subdomains; 3], ..signorini()? };
-    Ok(ContactShape::new(scene, kind)?)
+fn shape(bricks: usize, subdomains: usize, kind: SolverKind) -> Result<ContactShape, Box<dyn Error>> {
+    Ok(ContactShape::new(signorini()?.with_bricks([bricks; 3], [subdomains; 3]), kind)?)
 }
 
 fn print(size: &str, what: &str, seconds: f64, unit: f64) {
@@ -46,9 +45,9 @@ fn print(size: &str, what: &str, seconds: f64, unit: f64) {
 fn derivatives(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     let (problem, start, accuracy) = (shape.problem(), shape.start(), Accuracy::relative(1e-8)?);
     let state = shape.solve(&start, None, accuracy)?;
-    let dual = Vector::from_element(problem.boundary.dual_dimension(), 1.0);
+    let dual = Vector::from_element(problem.boundary.row_count, 1.0);
     let unit = |control: usize| (0..start.len()).map(|i| f64::from(u8::from(i == control))).collect::<Vec<f64>>();
-    let changes: Vec<Vec<f64>> = (0..start.len()).map(|control| problem.height_map.heights(&unit(control))).collect();
+    let changes: Vec<Vec<f64>> = (0..start.len()).map(unit).collect();
     let cold = median(|| shape.solve(&start, None, accuracy));
     let adjoint = median(|| shape.coderivative(&start, &state, &dual));
     print(size, "state, cold, to 1e-8", cold, cold + adjoint);
@@ -63,22 +62,22 @@ fn derivatives(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
 /// The parts of total FETI, in units of one product with F.
 fn parts(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     let problem = ContactProblem::new(shape.problem().scene.clone())?;
-    let blocks = problem.blocks(shape.start().as_slice())?;
+    let configuration = Configuration::new(&problem, shape.start().as_slice())?;
     let torn = TotalFeti::new(Arc::new(problem), TornOptions::default())?;
     let model = torn.model();
-    let system = model.factorize(&blocks)?;
+    let system = model.factorize(&configuration)?;
     let operator = DualOperator::new(model, &system);
     let rows = operator.gather(operator.loaded_displacement());
     let product = median(|| operator.apply(&rows));
     print(size, "product with F", product, product);
-    print(size, "factorisation of all subdomains", median(|| model.factorize(&blocks)), product);
+    print(size, "factorisation of all subdomains", median(|| model.factorize(&configuration)), product);
     Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("{:7} {:32} {:>10} {:>8}", "", "", "ms", "units");
-    for (mesh, subdomains) in [(12, 2), (24, 4)] {
-        let (size, shape) = (format!("{mesh}/{subdomains}"), shape(mesh, subdomains, SolverKind::Newton)?);
+    for (bricks, subdomains) in [(12, 2), (24, 4)] {
+        let (size, shape) = (format!("{bricks}/{subdomains}"), shape(bricks, subdomains, SolverKind::Newton)?);
         parts(&size, &shape)?;
         derivatives(&size, &shape)?;
     }

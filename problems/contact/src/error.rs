@@ -114,14 +114,14 @@ impl SceneError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ContactError {
-    /// A cell has no positive volume at an integration point: the shape folds.
+    /// A cell has no positive volume at an integration point or a corner: the shape folds.
     #[error("{body}: cell {cell} is inverted: det = {determinant:.6e}, allowed: > 0")]
     InvertedElement {
         /// Name of the body.
         body: String,
         /// Number of the cell in its mesh.
         cell: usize,
-        /// Smallest Jacobian determinant at its integration points, mm³ from the reference cell.
+        /// Smallest Jacobian determinant at its integration points and corners, mm³ from the reference cell.
         determinant: f64,
     },
     /// A contact node has no unique nearest point on the counter surface.

@@ -38,7 +38,7 @@ fn objective(scene: &Scene, solver: Solver, measure: &Measure) -> ContactObjecti
 
 fn value(objective: &ContactObjective, control: &Vector, accuracy: Accuracy) -> (f64, ValueError) {
     let state = objective.solver().solve(control, None, accuracy).unwrap();
-    let dual = objective.state_dual(control, &state);
+    let dual = objective.cost_gradient(control, &state).state;
     let error = objective.solver().pull_back(control, &state, &dual).unwrap().1;
     // What the optimizer is told is the same bound.
     assert_eq!(objective.differentiate(control, &state).unwrap().error_bound, error.bound);
@@ -87,7 +87,7 @@ fn check_pressures(scene: &Scene, control: &Vector) -> Result<(), TestCaseError>
 
 /// The stress norm: its adjoint carries a load as well. For the compliance it is an estimate: docs/method.md (5.3).
 fn check_fields(scene: &Scene, control: &Vector) -> Result<(), TestCaseError> {
-    let all = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
+    let all = Region::WHOLE;
     let solvers = [DIRICHLET, Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations))];
     let stress = Measure::Field(FieldMeasure::StressNorm { region: all, exponent: 8.0 });
     check(scene, control, &stress, &solvers, &[1e-4])?;
@@ -103,13 +103,13 @@ fn seeded_shape(seed: u64, level: f64, size: f64) -> Vector {
 }
 
 fn one_body(friction: f64, load: f64) -> Scene {
-    let mut scene = Scene { mesh: [4; 3], friction, ..signorini().unwrap() };
-    scene.lower.loads[0].traction[2] *= load;
+    let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_friction(friction);
+    scene.lower.loads[0] = scene.lower.loads[0].scaled(load);
     scene
 }
 
 fn two_bodies(friction: f64) -> Scene {
-    Scene { mesh: [4; 3], friction, ..hertz().unwrap() }
+    hertz().unwrap().with_bricks([4; 3], [2; 3]).with_friction(friction)
 }
 
 proptest! {

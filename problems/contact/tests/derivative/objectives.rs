@@ -1,10 +1,11 @@
 //! Taylor tests of the objectives beside pressure norm and peak: both solvers, one or two bodies, without friction too.
 
-use contact::body::mesh::Face;
+use crate::common::start_height;
+use contact::body::mesh::BlockFace;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
-use contact::scene::{Load, Scene, hertz, signorini};
+use contact::scene::{Load, LoadKind, Scene, hertz, signorini};
 use nonsmooth::verify::{Direction, seeded_direction, taylor_test};
 use nonsmooth::{
     Accuracy, Answer, Evaluation, NonsmoothObjective, OracleError, ReducedObjective, Request, StateSolver, Vector,
@@ -15,9 +16,12 @@ const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 /// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes.
 fn scenes() -> impl Iterator<Item = Scene> {
     let scene = |scene: Scene, friction| {
-        let mut scene = Scene { mesh: [4; 3], subdomains: [2, 1, 2], friction, ..scene };
-        let push = scene.lower.loads.first().map_or(20.0, |load| 0.02 * load.traction[2]);
-        scene.lower.loads.push(Load { face: Face::X1Max, traction: [-push, 0.0, 0.2 * push] });
+        let mut scene = scene.with_bricks([4; 3], [2, 1, 2]).with_friction(friction);
+        let push = scene.lower.loads.first().map_or(20.0, |load| match load.kind {
+            LoadKind::Traction([_, _, normal]) => 0.02 * normal,
+            _ => unreachable!("the presets have tractions"),
+        });
+        scene.lower.loads.push(Load::traction(BlockFace::X1Max, [-push, 0.0, 0.2 * push]));
         scene
     };
     [0.0, 0.3].into_iter().flat_map(move |friction| [signorini(), hertz()].map(|found| scene(found.unwrap(), friction)))
@@ -25,12 +29,13 @@ fn scenes() -> impl Iterator<Item = Scene> {
 
 /// A box that leaves out parts of both bodies.
 fn region(scene: &Scene, body: Option<usize>) -> Region {
-    let [a, b] = scene.size;
-    Region { lower: [0.0, 0.2 * b, 0.3 * scene.start_height], upper: [0.7 * a, b, 1.6 * scene.start_height], body }
+    let ([a, b], height) = (scene.blocks().unwrap().size, start_height(scene));
+    let (lower, upper) = ([0.0, 0.2 * b, 0.3 * height], [0.7 * a, b, 1.6 * height]);
+    Region { lower, upper, body, volume: None }
 }
 
 fn controls(shape: &ContactShape, seed: u64) -> Vector {
-    let height = shape.problem().scene.start_height;
+    let height = start_height(&shape.problem().scene);
     seeded_direction(36, seed).map(|entry| height * (0.98 + 0.01 * entry))
 }
 
@@ -38,7 +43,7 @@ fn controls(shape: &ContactShape, seed: u64) -> Vector {
 /// nearby, and the evaluation there.
 fn derivative_error(shape: ContactShape, measure: Measure) -> (f64, f64, Vector) {
     let at = controls(&shape, 3);
-    let height = shape.problem().scene.start_height;
+    let height = start_height(&shape.problem().scene);
     let objective = ContactObjective::new(shape, measure).unwrap();
     let direction = Direction::Given(seeded_direction(36, 4));
     let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
@@ -58,7 +63,7 @@ fn differentiated(name: &str, scene: &Scene, measure: impl Fn(&ContactShape) -> 
     let (value, slope) = (newton.1 / direct.1 - 1.0, (&newton.2 - &direct.2).norm() / direct.2.norm());
     println!(
         "{name}, {}, friction {}: {:.6e}; derivatives {:.1e}, {:.1e}; solvers differ by {value:.1e}, {slope:.1e}",
-        scene.name, scene.friction, newton.1, newton.0, direct.0
+        scene.name, scene.contact.friction, newton.1, newton.0, direct.0
     );
     assert!(newton.0 < 1e-6 && direct.0 < 1e-6, "{name}: {} {}", newton.0, direct.0);
     assert!(value.abs() < 1e-9 && slope < 1e-7, "{name}: {value:e} {slope:e}");
@@ -86,8 +91,7 @@ fn compliance() {
 /// Σλ_N/ΣA of a state at the start, MPa.
 fn mean_pressure(shape: &ContactShape) -> f64 {
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-    let areas: f64 = shape.problem().boundary.points.iter().map(|point| point.area).sum();
-    state.forces.total_normal_force() / areas
+    state.forces.total_normal_force() / state.rows.area()
 }
 
 #[test]
@@ -95,8 +99,8 @@ fn measures_of_the_pressures() {
     for scene in scenes() {
         differentiated("deviation from a wanted pressure", &scene, |shape| {
             let mean = mean_pressure(shape);
-            let grid = shape.problem().grid;
-            let places = grid.columns().map(|(i, j)| grid.position(i, j));
+            let grid = shape.problem().scene.blocks().unwrap().grid();
+            let places = grid.places();
             let wanted = places.map(|[x1, x2]| mean * (1.0 + x1 / grid.size[0] - x2 / grid.size[1])).collect();
             Measure::Pressure(PressureMeasure::Deviation { wanted })
         });
@@ -108,7 +112,7 @@ fn measures_of_the_pressures() {
 
 #[test]
 fn successive_approximations_share_the_adjoint() {
-    let scene = Scene { friction: 0.3, mesh: [4; 3], ..signorini().unwrap() };
+    let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_friction(0.3);
     let subgradient = |kind| {
         let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
         let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
@@ -122,16 +126,16 @@ fn successive_approximations_share_the_adjoint() {
 
 #[test]
 fn a_dual_of_another_size_and_a_state_without_displacements_are_refused() {
-    let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
+    let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
     for kind in KINDS {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-        let sizes = [shape.problem().boundary.dual_dimension(), shape.problem().displacement_count()];
+        let sizes = [shape.problem().boundary.row_count, shape.problem().displacement_count()];
         for wrong in [sizes[0] - 1, sizes[0] + 1, sizes[0] + sizes[1] - 1] {
-            let refusal = shape.height_sensitivity(&state, &Vector::zeros(wrong)).unwrap_err().to_string();
+            let refusal = shape.position_sensitivity(&state, &Vector::zeros(wrong)).unwrap_err().to_string();
             assert!(refusal.contains("dual of the contact state"), "{refusal}");
         }
-        assert!(shape.height_sensitivity(&state, &Vector::zeros(sizes[0] + sizes[1])).is_ok());
+        assert!(shape.position_sensitivity(&state, &Vector::zeros(sizes[0] + sizes[1])).is_ok());
         let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
         let objective = ReducedObjective::new(shape, cost);
         let refusal = objective.evaluate(&Request::tight(&objective.solver().start())).unwrap_err().to_string();
@@ -141,14 +145,15 @@ fn a_dual_of_another_size_and_a_state_without_displacements_are_refused() {
 
 #[test]
 fn regions_without_a_brick_or_a_body_are_refused() {
-    let shape = ContactShape::new(Scene { mesh: [4; 3], ..signorini().unwrap() }, SolverKind::Direct).unwrap();
+    let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
+    let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
     let refused = |region: Region| {
         let measure = FieldMeasure::StressNorm { region, exponent: 4.0 };
         FieldCost::new(measure, shape.problem()).unwrap_err().to_string()
     };
-    let all = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
+    let all = Region::WHOLE;
     let outside = refused(Region { lower: [0.0, 0.0, 200.0], ..all.clone() });
-    assert!(outside.contains("objective.region") && outside.contains("centre of a brick"), "{outside}");
+    assert!(outside.contains("objective.region") && outside.contains("centre of a cell"), "{outside}");
     let upper = refused(Region { body: Some(1), ..all });
     assert!(upper.contains("objective.body = upper"), "{upper}");
 }
@@ -175,10 +180,10 @@ impl NonsmoothObjective for LimitedPeak {
 #[test]
 fn the_limited_peak_has_the_derivative_that_differences_have() {
     for scene in scenes() {
-        let limit = 1.7 * scene.load();
         let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
+        let limit = 1.7 * shape.problem().load();
         let at = controls(&shape, 3);
-        let height = shape.problem().scene.start_height;
+        let height = start_height(&shape.problem().scene);
         let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
         let objective = LimitedPeak(ContactObjective::new(shape, Measure::LimitedPressure(norm, limit)).unwrap());
         let direction = Direction::Given(seeded_direction(36, 4));

@@ -15,16 +15,12 @@ struct Outcome {
     total: f64,
 }
 
-fn evaluate(mut scene: Scene, case: &Value, kind: SolverKind, subdomains: usize) -> Outcome {
-    scene.mesh = [case["mesh"].as_u64().unwrap() as usize; 3];
-    scene.subdomains = [subdomains; 3];
-    scene.friction = case["friction"].as_f64().unwrap();
+fn evaluate(scene: Scene, case: &Value, kind: SolverKind, subdomains: usize) -> Outcome {
+    let bricks = case["mesh"].as_u64().unwrap() as usize;
+    let scene = scene.with_bricks([bricks; 3], [subdomains; 3]).with_friction(case["friction"].as_f64().unwrap());
     let shape = ContactShape::new(scene, kind).unwrap();
-    let cost = PressureCost::new(
-        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
-        &shape.problem().boundary,
-    )
-    .unwrap();
+    let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+    let cost = PressureCost::new(measure, shape.problem()).unwrap();
     let objective = CompositeObjective::new(shape, cost);
     let controls = Vector::from_vec(numbers(&case["controls"]));
     let state = objective.solver().solve(&controls, None, Accuracy::TIGHTEST).unwrap();

@@ -8,15 +8,13 @@ use proptest::prelude::*;
 
 type Objective = CompositeObjective<ContactShape, PressureCost>;
 
-fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasure) -> Objective {
-    scene.mesh = [4; 3];
-    scene.friction = friction;
-    let bodies = std::iter::once(&mut scene.lower).chain(scene.upper.as_mut().map(|upper| &mut upper.body));
-    for part in bodies.flat_map(|body| &mut body.loads) {
-        part.traction = part.traction.map(|traction| load * traction);
+fn objective(scene: Scene, friction: f64, load: f64, measure: PressureMeasure) -> Objective {
+    let mut scene = scene.with_bricks([4; 3], [2; 3]).with_friction(friction);
+    for part in scene.bodies_mut().flat_map(|body| &mut body.loads) {
+        *part = part.scaled(load);
     }
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
-    let cost = PressureCost::new(measure, &shape.problem().boundary).unwrap();
+    let cost = PressureCost::new(measure, shape.problem()).unwrap();
     CompositeObjective::new(shape, cost)
 }
 

@@ -1,5 +1,7 @@
 //! Forward derivatives of the contact state against the adjoint, to rounding, and against states of moved surfaces.
 
+use crate::common::unit;
+
 use contact::body::elasticity::Material;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{ContactSolver, Tangents};
@@ -7,9 +9,8 @@ use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
-fn shape(mut scene: Scene, friction: f64, kind: SolverKind) -> ContactShape {
-    (scene.mesh, scene.subdomains, scene.friction) = ([6; 3], [2, 3, 2], friction);
-    ContactShape::new(scene, kind).unwrap()
+fn shape(scene: Scene, friction: f64, kind: SolverKind) -> ContactShape {
+    ContactShape::new(scene.with_bricks([6; 3], [2, 3, 2]).with_friction(friction), kind).unwrap()
 }
 
 /// Both scenes without and with friction.
@@ -22,10 +23,9 @@ fn controls(shape: &ContactShape, seed: u64) -> Vector {
     shape.start() + seeded_direction(36, seed) * 2.0
 }
 
-/// Heights of the contact nodes for some unit controls.
-fn changes(shape: &ContactShape, columns: &[usize]) -> Vec<Vec<f64>> {
-    let unit = |k: usize| (0..36).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-    columns.iter().map(|&k| shape.problem().height_map.heights(&unit(k))).collect()
+/// Some unit changes of the controls.
+fn changes(columns: &[usize]) -> Vec<Vec<f64>> {
+    columns.iter().map(|&column| unit(36, column)).collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -37,13 +37,14 @@ fn forward_and_adjoint_agree(shape: &ContactShape, tolerance: f64) {
     let solver = shape.contact_solver();
     for seed in 0..3 {
         let state = shape.solve(&controls(shape, seed), None, Accuracy::TIGHTEST).unwrap();
-        let changes = changes(shape, &[0, 7, 20, 35]);
+        let changes = changes(&[0, 7, 20, 35]);
         let tangents = solver.tangents(&state.solution, &changes, 0.0).unwrap();
         assert!(tangents.residual < 1e-10, "{:e}", tangents.residual);
         let dual = seeded_direction(shape.problem().boundary.row_count, 100 + seed);
-        let heights = solver.sensitivities(&state.solution, dual.as_slice(), 1e-12).unwrap().heights;
+        let positions = solver.sensitivities(&state.solution, dual.as_slice(), 1e-12).unwrap().positions;
+        let controls = shape.problem().map.pull_back(&positions);
         for (forces, change) in tangents.forces.iter().zip(&changes) {
-            let (forward, adjoint) = (dot(forces, dual.as_slice()), dot(&heights, change));
+            let (forward, adjoint) = (dot(forces, dual.as_slice()), dot(&controls, change));
             let size: f64 = forces.iter().zip(dual.iter()).map(|(a, b)| (a * b).abs()).sum();
             assert!((forward - adjoint).abs() <= tolerance * size, "{forward} {adjoint} {size}");
         }
@@ -78,7 +79,7 @@ fn both_solvers_have_the_same_tangents() {
         let both = [SolverKind::Newton, SolverKind::Direct].map(|kind| {
             let shape = shape(scene.clone(), friction, kind);
             let state = shape.solve(&controls(&shape, 3), None, Accuracy::TIGHTEST).unwrap();
-            let changes = changes(&shape, &[1, 8, 21]);
+            let changes = changes(&[1, 8, 21]);
             shape.contact_solver().tangents(&state.solution, &changes, 0.0).unwrap()
         });
         assert!(both[0].applications > 0 && both[1].applications == 0);
@@ -93,7 +94,7 @@ fn tangents_of_total_feti_are_as_accurate_as_asked_for() {
         let shape = shape(scene, friction, SolverKind::Newton);
         let state = shape.solve(&controls(&shape, 4), None, Accuracy::TIGHTEST).unwrap();
         // More columns than advance in lockstep: two batches.
-        let changes = changes(&shape, &(0..45).map(|k| k % 36).collect::<Vec<_>>());
+        let changes = changes(&(0..45).map(|k| k % 36).collect::<Vec<_>>());
         let solve = |tolerance| shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap();
         let exact = solve(0.0);
         let mut applications = exact.applications;
@@ -112,7 +113,7 @@ fn tangents_of_total_feti_are_as_accurate_as_asked_for() {
 fn ten_tangents(scene: Scene, tolerance: f64) -> Tangents {
     let shape = shape(scene, 0.3, SolverKind::Newton);
     let state = shape.solve(&controls(&shape, 6), None, Accuracy::TIGHTEST).unwrap();
-    let changes = changes(&shape, &(5..15).collect::<Vec<_>>());
+    let changes = changes(&(5..15).collect::<Vec<_>>());
     shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap()
 }
 
@@ -135,7 +136,7 @@ fn tangents_in_single_precision_do_not_depend_on_the_unit_of_force() {
         let material = scene.lower.material;
         scene.lower.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
         for load in &mut scene.lower.loads {
-            load.traction = load.traction.map(|traction| factor * traction);
+            *load = load.scaled(factor);
         }
         let mut other = ten_tangents(scene, 1e-2);
         assert_eq!(other.applications, unit.applications);
@@ -150,7 +151,7 @@ fn changes_of_another_surface_are_refused() {
     let shape = shape(signorini().unwrap(), 0.3, SolverKind::Newton);
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
     let error = shape.contact_solver().tangents(&state.solution, &[vec![1.0; 3]], 0.0).unwrap_err();
-    assert!(error.to_string().contains("heights of contact nodes"), "{error}");
+    assert!(error.to_string().contains("3 controls, 36 expected"), "{error}");
 }
 
 #[test]
@@ -162,7 +163,7 @@ fn forces_and_openings_of_moved_surfaces_differ_by_the_tangents() {
         let solve = |controls: &Vector| shape.solve(controls, None, Accuracy::TIGHTEST).unwrap();
         let state = solve(&at);
         let column = 14;
-        let tangents = shape.contact_solver().tangents(&state.solution, &changes(&shape, &[column]), 0.0).unwrap();
+        let tangents = shape.contact_solver().tangents(&state.solution, &changes(&[column]), 0.0).unwrap();
         let mut moved = [at.clone(), at];
         moved[0][column] += STEP;
         moved[1][column] -= STEP;

@@ -1,8 +1,10 @@
 //! Fields of solved shapes: two independent solvers agree, forces are in equilibrium through every section, boundary
 //! values are those of the contact law.
 
-use contact::body::elasticity::stress::{BrickStress, COMPONENTS};
-use contact::body::elasticity::{Formulation, brick};
+use crate::common::{bent, length, unit};
+use contact::body::Body;
+use contact::body::elasticity::stress::{COMPONENTS, stress_at};
+use contact::body::elasticity::{CellNodes, Formulation, hex8};
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::{ContactSolver, ContactStatus};
@@ -11,16 +13,13 @@ use contact::fields::{BodyFields, Fields};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{Accuracy, OutputJacobian, StateSolver, Vector};
-use testset::kit::{relative_difference, wavy};
+use testset::kit::relative_difference;
 
-fn bent(scene: &Scene) -> Vector {
-    Vector::from_vec(wavy(scene.start_height, 36))
-}
+/// Bricks of a body along every axis.
+const BRICKS: usize = 6;
 
-fn solve(mut scene: Scene, kind: SolverKind, control: Option<Vector>) -> (ContactShape, ContactState, Vector) {
-    scene.mesh = [6; 3];
-    scene.subdomains = [2, 3, 2];
-    let shape = ContactShape::new(scene, kind).unwrap();
+fn solve(scene: Scene, kind: SolverKind, control: Option<Vector>) -> (ContactShape, ContactState, Vector) {
+    let shape = ContactShape::new(scene.with_bricks([BRICKS; 3], [2, 3, 2]), kind).unwrap();
     let control = control.unwrap_or_else(|| shape.start());
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
     (shape, state, control)
@@ -33,7 +32,7 @@ fn scenes() -> Vec<Scene> {
         for (friction, formulation) in
             [(0.3, Formulation::Standard), (0.0, Formulation::Standard), (0.3, Formulation::MeanDilatation)]
         {
-            let mut scene = Scene { friction, ..scene.clone() };
+            let mut scene = scene.clone().with_friction(friction);
             for body in scene.bodies_mut() {
                 body.material = body.material.with_formulation(formulation);
             }
@@ -47,7 +46,7 @@ fn scenes() -> Vec<Scene> {
 fn both_solvers_give_the_same_fields() {
     for scene in scenes() {
         let control = bent(&scene);
-        let label = format!("{} friction {}", scene.name, scene.friction);
+        let label = format!("{} friction {}", scene.name, scene.contact.friction);
         let (torn, direct) = [SolverKind::Newton, SolverKind::Direct]
             .map(|kind| {
                 let (shape, state, _) = solve(scene.clone(), kind, Some(control.clone()));
@@ -71,7 +70,7 @@ fn both_solvers_give_the_same_fields() {
             // Both states are solved to relative residuals near 1e-12; measured differences are at most 6e-13.
             assert!(displacement < 1e-10 && stress < 1e-10 && nodal < 1e-10, "{label}");
             assert!(defect < 1e-10 && second.gluing_defect == 0.0, "{label}: {defect:.1e}");
-            assert_eq!(first.block, second.block);
+            assert_eq!((&first.mesh, &first.positions), (&second.mesh, &second.positions));
             let mut numbers = first.subdomain.clone();
             numbers.sort_unstable();
             numbers.dedup();
@@ -82,25 +81,31 @@ fn both_solvers_give_the_same_fields() {
         assert!(relative_difference(&contact[0].pressure, &contact[1].pressure) < 1e-10);
         assert!(relative_difference(&contact[0].remaining_gap, &contact[1].remaining_gap) < 1e-9);
         assert_eq!(contact[0].status, contact[1].status);
-        assert_eq!(contact[0].traction.is_some(), scene.friction > 0.0);
-        assert_eq!(contact[0].slip.is_some(), scene.friction > 0.0);
+        assert_eq!(contact[0].traction.is_some(), scene.contact.friction > 0.0);
+        assert_eq!(contact[0].slip.is_some(), scene.contact.friction > 0.0);
     }
 }
 
+/// The bricks of a layer, which are numbered upwards column by column.
+fn layer_of(fields: &BodyFields, layer: usize) -> impl Iterator<Item = usize> + use<> {
+    (0..fields.mesh.cell_count()).filter(move |cell| cell % BRICKS == layer)
+}
+
 /// Force that the bricks of a layer of a body pass upwards: ∫ σ ∇φ dV with φ rising from 0 to 1 through the layer.
-fn section_force(fields: &BodyFields, scene: &contact::scene::BodyScene, layer: usize) -> [f64; 3] {
-    let grid = &fields.block.grid;
+fn section_force(fields: &BodyFields, body: &Body, layer: usize) -> [f64; 3] {
     let mut force = [0.0; 3];
-    for brick in grid.bricks().filter(|brick| brick[2] == layer) {
-        let (nodes, corners) = (fields.block.brick(brick), grid.brick_nodes(brick));
-        let u: [f64; 24] = std::array::from_fn(|dof| fields.displacement[corners[dof / 3]][dof % 3]);
-        for (stress, point) in BrickStress::new(&nodes, &scene.material, &u).at_gauss_points() {
+    for cell in layer_of(fields, layer) {
+        let CellNodes::Hex8(nodes) = fields.mesh.cell_nodes(cell, &fields.positions) else { panic!("bricks alone") };
+        let (points, u) = (hex8::gauss_points(&nodes), fields.mesh.cell_values(cell, &fields.displacement));
+        for point in &points {
+            let stress = stress_at(point, &points, body.material(cell), &u);
             let mut full = [[0.0; 3]; 3];
             for (value, (row, column)) in stress.iter().zip(COMPONENTS) {
                 (full[row][column], full[column][row]) = (*value, *value);
             }
             for (component, force) in force.iter_mut().enumerate() {
-                for corner in (0..8).filter(|corner| corner & 1 == 1) {
+                // The last four corners are those of the upper face.
+                for corner in 4..8 {
                     let along: f64 = (0..3).map(|j| full[component][j] * point.gradients[corner][j]).sum();
                     *force += point.volume * along;
                 }
@@ -115,24 +120,25 @@ fn every_layer_passes_on_what_acts_beyond_it() {
     for scene in scenes() {
         for kind in [SolverKind::Newton, SolverKind::Direct] {
             let (shape, state, _) = solve(scene.clone(), kind, Some(bent(&scene)));
-            let fields = shape.fields(&state).unwrap();
+            let (fields, bodies) = (shape.fields(&state).unwrap(), &shape.problem().bodies);
             let contact: f64 = fields.contact.pressure.iter().zip(&fields.contact.area).map(|(p, a)| p * a).sum();
             assert!((contact / state.forces.total_normal_force() - 1.0).abs() < 1e-14);
             // Nothing else acts along e₃ between the bottom of the lower body and the contact boundary.
             for layer in 0..6 {
-                let force = section_force(&fields.bodies[0], &scene.lower, layer)[2];
+                let force = section_force(&fields.bodies[0], &bodies[0], layer)[2];
                 assert!((force / -contact - 1.0).abs() < 1e-9, "{kind:?} layer {layer}: {force} {contact}");
             }
-            let Some(upper) = &scene.upper else {
+            if scene.upper.is_none() {
                 // 3000 MPa on 100 mm × 100 mm.
                 assert!((contact / 3e7 - 1.0).abs() < 1e-9, "{contact}");
                 continue;
-            };
+            }
+            let grid = shape.problem().scene.blocks().unwrap().grid();
+            let height = |j: usize, k: usize| fields.bodies[1].positions[grid.node([BRICKS, j, k])][2];
             // −2000 MPa on the top of 10 mm × 10 mm and on the share of the side above the layer.
             for layer in 0..6 {
                 let side: f64 = (0..6)
                     .map(|j| {
-                        let height = |j: usize, k: usize| fields.bodies[1].block.coordinates([6, j, k])[2];
                         let area = |k: usize| {
                             (height(j, k + 1) - height(j, k) + height(j + 1, k + 1) - height(j + 1, k)) / 2.0
                                 * (10.0 / 6.0)
@@ -141,7 +147,7 @@ fn every_layer_passes_on_what_acts_beyond_it() {
                     })
                     .sum();
                 let expected = -2000.0 * (100.0 + side);
-                let force = section_force(&fields.bodies[1], &upper.body, layer)[2];
+                let force = section_force(&fields.bodies[1], &bodies[1], layer)[2];
                 assert!((force / expected - 1.0).abs() < 1e-9, "{kind:?} upper layer {layer}: {force} {expected}");
             }
         }
@@ -166,10 +172,9 @@ fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
             let fields = shape.fields(&state).unwrap();
             let body = &fields.bodies[0];
             for layer in 0..6 {
-                let bricks = body.block.grid.bricks().zip(&body.stress).filter(|(brick, _)| brick[2] == layer);
-                let (sum, volume) = bricks.fold((0.0, 0.0), |(sum, total), (brick, stress)| {
-                    let volume = brick::volume(&body.block.brick(brick));
-                    (sum + volume * stress[2], total + volume)
+                let (sum, volume) = layer_of(body, layer).fold((0.0, 0.0), |(sum, total), cell| {
+                    let volume = body.mesh.cell_nodes(cell, &body.positions).volume();
+                    (sum + volume * body.stress[cell][2], total + volume)
                 });
                 assert!((sum / volume + 3000.0).abs() < 3000.0 * 1e-9, "{formulation:?} {kind:?}: {}", sum / volume);
             }
@@ -181,61 +186,65 @@ fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
 fn contact_fields_obey_the_contact_law() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
         let (shape, state, control) = solve(scene.clone(), SolverKind::Newton, Some(bent(&scene)));
+        let (problem, friction) = (shape.problem(), scene.contact.friction);
         let Fields { bodies, contact } = shape.fields(&state).unwrap();
         let largest = contact.pressure.iter().copied().fold(0.0, f64::max);
         let (traction, slip) = (contact.traction.as_ref().unwrap(), contact.slip.as_ref().unwrap());
-        let heights = shape.problem().height_map.heights(control.as_slice());
-        let [n1, n2, n3] = contact.grid.cells;
+        let positions = problem.positions(control.as_slice()).unwrap();
         let mut seen = std::collections::HashSet::new();
         for (node, status) in contact.status.iter().enumerate() {
             seen.insert(*status);
-            let (pressure, tangential) = (contact.pressure[node], traction[node][0].hypot(traction[node][1]));
-            assert!(pressure >= 0.0 && tangential <= scene.friction * pressure * (1.0 + 1e-12));
-            assert_eq!(contact.position[node][2], heights[node]);
+            let (pressure, tangential) = (contact.pressure[node], length(traction[node]));
+            assert!(pressure >= 0.0 && tangential <= friction * pressure * (1.0 + 1e-12));
+            assert_eq!(contact.position[node], positions[0][contact.nodes[node] as usize]);
             match status {
                 ContactStatus::Open => assert!(pressure == 0.0 && contact.remaining_gap[node] > 0.0),
-                ContactStatus::Stick => assert!(slip[node][0].hypot(slip[node][1]) < 1e-8),
-                ContactStatus::Slip => assert!(tangential > 0.99 * scene.friction * pressure),
+                ContactStatus::Stick => assert!(length(slip[node]) < 1e-8),
+                ContactStatus::Slip => assert!(tangential > 0.99 * friction * pressure),
             }
             // The gap that is left is the distance of the deformed surfaces along e₃ (the contact normal of the model).
-            let column = [node / (n2 + 1), node % (n2 + 1)];
-            let above = match bodies.get(1) {
-                Some(upper) => {
-                    let index = contact.grid.node([column[0], column[1], 0]);
-                    upper.block.coordinates([column[0], column[1], 0])[2] + upper.displacement[index][2]
+            let above = match (bodies.get(1), problem.boundary.points[node].sides.get(1)) {
+                (Some(upper), Some(side)) => {
+                    let index = side.node as usize;
+                    upper.positions[index][2] + upper.displacement[index][2]
                 }
-                None => contact.position[node][2] + contact.gap[node],
+                _ => contact.position[node][2] + contact.gap[node],
             };
             let deformed = contact.position[node][2] + contact.displacement[node][2];
             assert!((above - deformed - contact.remaining_gap[node]).abs() < 1e-9, "{node}");
             assert!(contact.remaining_gap[node] > -1e-9 && largest > 0.0);
         }
-        assert_eq!(contact.status.len(), (n1 + 1) * (n2 + 1));
-        assert_eq!(bodies[0].block.grid.cells[2], n3);
+        assert_eq!(contact.status.len(), (BRICKS + 1) * (BRICKS + 1));
+        assert_eq!((contact.facets.facets.len(), bodies[0].mesh.cell_count()), (BRICKS * BRICKS, BRICKS.pow(3)));
         assert!(seen.len() >= 2, "{seen:?}");
     }
 }
 
 #[test]
-fn height_sensitivities_are_what_the_subgradient_is_made_of() {
+fn position_sensitivities_are_what_the_subgradient_is_made_of() {
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let scene = hertz().unwrap();
         let (shape, state, control) = solve(scene.clone(), kind, Some(bent(&scene)));
-        let cost = PressureCost::new(
-            PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
-            &shape.problem().boundary,
-        )
-        .unwrap();
-        let gradient = shape.output_dual(&state, &cost.subgradient(&shape.outputs(&state)));
-        let (heights, _) = shape.height_sensitivity(&state, &gradient).unwrap();
-        let (subgradient, _) = shape.pull_back(&control, &state, &gradient).unwrap();
-        // Along one control: Σ over nodes of ∂J/∂height × ∂height/∂control.
-        let map = &shape.problem().height_map;
+        let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+        let cost = PressureCost::new(measure, shape.problem()).unwrap();
+        let gradient = shape.output_dual(&control, &state, &cost.subgradient(&shape.outputs(&state)));
+        // Areas are those of the projected grid.
+        assert_eq!(gradient.control.amax(), 0.0);
+        let (positions, _) = shape.position_sensitivity(&state, &gradient.state).unwrap();
+        let (subgradient, _) = shape.pull_back(&control, &state, &gradient.state).unwrap();
+        // Along changes of the controls: Σ over nodes of ∂J/∂x · x′.
+        let along = |change: Vec<f64>| -> f64 {
+            let changes = [change];
+            let velocities = shape.problem().map.velocities(&changes);
+            let node = |(node, sensitivity): (usize, &[f64; 3])| {
+                let velocity = velocities.at(node as u32, 0);
+                (0..3).map(|axis| velocity[axis] * sensitivity[axis]).sum::<f64>()
+            };
+            positions.iter().enumerate().map(node).sum()
+        };
         let size = subgradient.amax();
         for index in [0, 7, 20, 35] {
-            let mut moved = vec![0.0; 36];
-            moved[index] = 1.0;
-            let sum: f64 = map.heights(&moved).iter().zip(&heights).map(|(moved, height)| moved * height).sum();
+            let sum = along(unit(36, index));
             assert!((sum - subgradient[index]).abs() < 1e-12 * size, "{sum} {}", subgradient[index]);
         }
         // And along the controls against a difference quotient of J.
@@ -245,8 +254,7 @@ fn height_sensitivities_are_what_the_subgradient_is_made_of() {
             cost.value(&shape.outputs(&shape.solve(&moved, None, Accuracy::TIGHTEST).unwrap()))
         };
         let quotient = (value(1e-5) - value(-1e-5)) / 2e-5;
-        let predicted: f64 =
-            map.heights(direction.as_slice()).iter().zip(&heights).map(|(moved, height)| moved * height).sum();
+        let predicted = along(direction.as_slice().to_vec());
         println!("{kind:?}: derivative {predicted:.6e}, difference quotient {quotient:.6e}");
         // Central differences of a step 1e-5: relative error of the order of 1e-6.
         assert!((predicted / quotient - 1.0).abs() < 1e-4, "{predicted} {quotient}");
@@ -261,13 +269,11 @@ fn states_of_other_solvers_and_meshes_are_refused() {
     assert!(message(torn.fields(&direct_state)).contains("another kind of contact solver"));
     assert!(message(direct.fields(&torn_state)).contains("another kind of contact solver"));
     for (kind, state) in [(SolverKind::Newton, &torn_state), (SolverKind::Direct, &direct_state)] {
-        let mut scene = signorini().unwrap();
-        (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
-        let other = ContactShape::new(scene, kind).unwrap();
+        let other = ContactShape::new(signorini().unwrap().with_bricks([4; 3], [2; 3]), kind).unwrap();
         let text = message(other.fields(state));
         assert!(text.contains("another mesh"), "{text}");
         let (solver, state) = (other.contact_solver(), &state.solution);
-        let (dual, change) = (vec![1.0; other.problem().boundary.row_count], vec![1.0; 25]);
+        let (dual, change) = (vec![1.0; other.problem().boundary.row_count], vec![1.0; 36]);
         let mut refusals = vec![
             solver.sensitivities(state, &dual, 1e-8).map(|_| ()),
             solver.tangents(state, &[change], 1e-8).map(|_| ()),
@@ -284,7 +290,7 @@ fn states_of_other_solvers_and_meshes_are_refused() {
             assert!(matches!(error, ContactError::ForeignState { .. }), "{error}");
         }
         let state = other.solve(&other.start(), None, Accuracy::TIGHTEST).unwrap();
-        let error = solver.tangents(&state.solution, &[vec![1.0; 24]], 1e-8).unwrap_err();
-        assert!(matches!(error, ContactError::ForeignState { expected: 25, found: 24, .. }), "{error}");
+        let error = solver.tangents(&state.solution, &[vec![1.0; 35]], 1e-8).unwrap_err();
+        assert!(matches!(error, ContactError::ForeignState { expected: 36, found: 35, .. }), "{error}");
     }
 }

@@ -1,8 +1,9 @@
 //! Plates and rods on total FETI: the state is that of direct condensation.
 
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::linear::vector::{add_scaled, norm};
-use contact::scene::{CounterSurface, Scene, signorini};
+use contact::scene::{CounterSurface, Load, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
 const FLAT: usize = 1500;
@@ -12,13 +13,13 @@ const TALL: usize = 520;
 fn plates_one_to_a_hundred_and_rods_are_solved() {
     // The plate was refused before K⁺ was balanced.
     for (height, pressure, allowed) in [(1.0, 30.0, FLAT), (1e4, 30.0, TALL)] {
-        let mut scene = Scene { mesh: [4; 3], subdomains: [2; 3], start_height: height, ..signorini().unwrap() };
+        let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_heights(|heights| {
+            heights.start_height = height;
+            heights.bounds.minimum_height = 0.5 * height;
+            heights.bounds.volume = [0.8e4 * height, 1.2e4 * height];
+        });
         scene.counter_surface = CounterSurface::Plane { height: 1.00001 * height };
-        scene.bounds.minimum_height = 0.5 * height;
-        scene.bounds.volume = [0.8e4 * height, 1.2e4 * height];
-        for load in &mut scene.lower.loads {
-            load.traction = [0.0, 0.0, pressure];
-        }
+        scene.lower.loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, pressure])];
         let solve = |kind| {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
             let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();

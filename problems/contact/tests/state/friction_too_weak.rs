@@ -1,7 +1,7 @@
 //! Bodies that only friction could hold: where contact cannot build up normal forces, the refusal has a proof.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ContactSolver};
@@ -12,25 +12,23 @@ use proptest::prelude::*;
 use std::sync::Arc;
 
 /// A block of 100 mm whose bottom is held along x₃ only, beneath an obstacle, pushed at one side.
-fn pushed(mesh: usize, friction: f64, ratio: f64, obstacle: CounterSurface, traction: [f64; 3]) -> Scene {
-    Scene {
-        mesh: [mesh; 3],
-        subdomains: [1; 3],
-        friction,
-        lower: BodyScene {
-            material: Material::new(1e4, ratio).unwrap(),
-            supports: vec![Support { face: Face::Bottom, components: [false, false, true] }],
-            loads: vec![Load { face: Face::X1Max, traction }],
-        },
+fn pushed(bricks: usize, friction: f64, ratio: f64, obstacle: CounterSurface, traction: [f64; 3]) -> Scene {
+    let scene = Scene {
+        lower: BodyScene::new(
+            Material::new(1e4, ratio).unwrap(),
+            vec![Support::new(BlockFace::Bottom, [false, false, true])],
+            vec![Load::traction(BlockFace::X1Max, traction)],
+        ),
         counter_surface: obstacle,
         ..signorini().unwrap()
-    }
+    };
+    scene.with_bricks([bricks; 3], [1; 3]).with_friction(friction)
 }
 
 /// The obstacle as a second body, which holds the first one.
 fn between_bodies(mut scene: Scene) -> Scene {
-    let supports = vec![Support { face: Face::Top, components: [true; 3] }];
-    let body = BodyScene { material: scene.lower.material, supports, loads: vec![] };
+    let supports = vec![Support::new(BlockFace::Top, [true; 3])];
+    let body = BodyScene::new(scene.lower.material, supports, vec![]);
     scene.upper = Some(UpperBody { body, top: 200.0 });
     scene
 }
@@ -78,9 +76,9 @@ fn what_contact_cannot_build_up_is_refused_with_the_motion() {
 #[test]
 fn loads_in_equilibrium_need_no_friction() {
     for ratio in [0.3, 0.499, 0.4999999] {
-        let mut scene = pushed(2, 0.3, ratio, CounterSurface::Plane { height: 101.0 }, [0.0, 0.0, 0.01]);
-        (scene.size, scene.mesh) = ([1.0; 2], [2, 2, 24]);
-        scene.lower.loads.push(Load { face: Face::X1Min, traction: [0.0, 0.0, -0.01] });
+        let scene = pushed(2, 0.3, ratio, CounterSurface::Plane { height: 101.0 }, [0.0, 0.0, 0.01]);
+        let mut scene = scene.with_blocks(|blocks| (blocks.size, blocks.bricks) = ([1.0; 2], [2, 2, 24]));
+        scene.lower.loads.push(Load::traction(BlockFace::X1Min, [0.0, 0.0, -0.01]));
         let shape = ContactShape::new(scene, SolverKind::Auto).unwrap();
         if let Err(OracleError::Failed(error)) = shape.solve(&Vector::from_element(36, 100.0), None, Accuracy::TIGHTEST)
         {
@@ -152,7 +150,7 @@ proptest! {
             scene = between_bodies(scene);
         }
         if second == 1 {
-            scene.lower.supports.push(Support { face: Face::X2Min, components: [false, true, false] });
+            scene.lower.supports.push(Support::new(BlockFace::X2Min, [false, true, false]));
         }
         let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).unwrap())).unwrap();
         let controls = vec![100.0; 36];

@@ -7,8 +7,7 @@ use nonsmooth::{Accuracy, Coderivative, OracleError, OutputJacobian, StateSolver
 
 #[test]
 fn states_and_their_derivatives_are_interrupted() {
-    let mut scene = hertz().unwrap();
-    (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
+    let scene = hertz().unwrap().with_bricks([4; 3], [2; 3]);
     for kind in [SolverKind::Newton, SolverKind::Direct, SolverKind::Auto, SolverKind::AugmentedLagrangian] {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let start = shape.start();
@@ -18,7 +17,7 @@ fn states_and_their_derivatives_are_interrupted() {
         let state = solve().unwrap();
         let again = watched(|| false, solve).unwrap();
         assert_eq!(state.forces.normal, again.forces.normal, "{kind:?}");
-        let dual = Vector::from_element(shape.problem().boundary.dual_dimension(), 1.0);
+        let dual = Vector::from_element(shape.problem().boundary.row_count, 1.0);
         let adjoint = watched(|| true, || shape.coderivative(&start, &state, &dual));
         assert!(matches!(adjoint, Err(OracleError::Interrupted)), "{kind:?}");
         let tangents = watched(|| true, || shape.linearize(&start, &state, Accuracy::TIGHTEST));

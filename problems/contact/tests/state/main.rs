@@ -4,6 +4,8 @@
 
 mod closed_forms;
 mod clusters;
+#[path = "../common/mod.rs"]
+mod common;
 mod cone_programs;
 mod dual_qp;
 mod fields;

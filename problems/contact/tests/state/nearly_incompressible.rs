@@ -1,7 +1,7 @@
 //! Nearly incompressible bodies take about as many products with F as compressible ones, and both solvers agree.
 
 use contact::body::elasticity::{Formulation, Material};
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::linear::vector::{add_scaled, norm};
 use contact::plausibility::Warning;
@@ -9,8 +9,8 @@ use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
 /// A preset with all bodies of one Poisson's ratio and formulation.
-fn scene(preset: Scene, [mesh, subdomains]: [usize; 2], ratio: f64, formulation: Formulation) -> Scene {
-    let mut scene = Scene { mesh: [mesh; 3], subdomains: [subdomains; 3], ..preset };
+fn scene(preset: Scene, [bricks, subdomains]: [usize; 2], ratio: f64, formulation: Formulation) -> Scene {
+    let mut scene = preset.with_bricks([bricks; 3], [subdomains; 3]);
     for body in scene.bodies_mut() {
         let young = body.material.young_modulus();
         body.material = Material::new(young, ratio).unwrap().with_formulation(formulation);
@@ -74,18 +74,21 @@ fn ordinary_materials_have_no_compressible_neighbour() {
 
 /// A soft layer, bonded to its base, under a steel sphere: `problems/scenes/thin_layer.toml`.
 fn layer(ratio: f64, formulation: Formulation) -> Scene {
-    let mut scene =
-        Scene { mesh: [12, 12, 4], subdomains: [2, 2, 1], friction: 0.1, start_height: 1.0, ..hertz().unwrap() };
+    let scene = hertz().unwrap().with_bricks([12, 12, 4], [2, 2, 1]).with_friction(0.1);
+    let mut scene = scene.with_heights(|heights| {
+        heights.start_height = 1.0;
+        heights.bounds.minimum_height = 0.5;
+        heights.bounds.volume = [80.0, 120.0];
+    });
     scene.lower.material = Material::new(100.0, ratio).unwrap().with_formulation(formulation);
-    for support in scene.lower.supports.iter_mut().filter(|support| support.face == Face::Bottom) {
-        *support = Support { components: [true; 3], ..*support };
+    for support in scene.lower.supports.iter_mut().filter(|support| support.face == BlockFace::Bottom.name()) {
+        *support = Support::new(BlockFace::Bottom, [true; 3]);
     }
     scene.counter_surface = CounterSurface::Sphere { apex: 1.0, radius: 100.0, centre: [0.0; 2] };
-    scene.bounds.minimum_height = 0.5;
-    scene.bounds.volume = [80.0, 120.0];
+
     if let Some(upper) = &mut scene.upper {
         upper.top = 8.0;
-        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
     }
     scene
 }
@@ -94,7 +97,7 @@ fn layer(ratio: f64, formulation: Formulation) -> Scene {
 fn peak(ratio: f64, formulation: Formulation) -> (f64, Vec<Warning>) {
     let shape = ContactShape::new(layer(ratio, formulation), SolverKind::default()).unwrap();
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-    let pressures = shape.problem().boundary.pressures(&state.forces.normal);
+    let pressures = state.rows.pressures(&state.forces.normal);
     let warnings = shape.warnings(&state).unwrap().into_iter().filter(|warning| warning.code == "volume-locking");
     (pressures.iter().copied().fold(0.0, f64::max), warnings.collect())
 }

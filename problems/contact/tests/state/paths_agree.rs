@@ -1,6 +1,7 @@
 //! Independent paths give the same state: TFETI against direct condensation, several tearings and numbers of threads.
 
-use contact::body::mesh::Face;
+use crate::common::bent;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
@@ -8,15 +9,9 @@ use contact::solvers::{Processes, SolverPlan};
 use contact::tfeti::{Precision, PreconditionerKind, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::sync::Arc;
-use testset::kit::wavy;
 
-fn bent(scene: &Scene) -> Vector {
-    Vector::from_vec(wavy(scene.start_height, 36))
-}
-
-fn solve(mut scene: Scene, kind: SolverKind, mesh: usize, subdomains: usize) -> (ContactShape, ContactState) {
-    scene.mesh = [mesh; 3];
-    scene.subdomains = [subdomains; 3];
+fn solve(scene: Scene, kind: SolverKind, bricks: usize, subdomains: usize) -> (ContactShape, ContactState) {
+    let scene = scene.with_bricks([bricks; 3], [subdomains; 3]);
     let control = bent(&scene);
     let shape = ContactShape::new(scene, kind).unwrap();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
@@ -38,7 +33,7 @@ fn assert_same(first: &ContactState, second: &ContactState, label: &str) {
 fn tfeti_equals_direct_condensation() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
         for friction in [0.0, 0.3, 0.8] {
-            let scene = Scene { friction, ..scene.clone() };
+            let scene = scene.clone().with_friction(friction);
             let (_, torn) = solve(scene.clone(), SolverKind::Newton, 6, 2);
             let (_, direct) = solve(scene.clone(), SolverKind::Direct, 6, 2);
             assert_same(&torn, &direct, &format!("{} friction {friction}", scene.name));
@@ -59,8 +54,7 @@ fn tearing_does_not_change_the_state() {
 
 #[test]
 fn every_preconditioner_gives_the_same_state() {
-    let mut scene = signorini().unwrap();
-    scene.mesh = [6; 3];
+    let scene = signorini().unwrap().with_bricks([6; 3], [2; 3]);
     let control = bent(&scene);
     let state = |kind| {
         let plan = SolverPlan { preconditioner: kind, ..SolverPlan::new(scene.clone(), SolverKind::Newton) };
@@ -82,7 +76,7 @@ fn relative_difference(first: &[f64], second: &[f64]) -> f64 {
 fn single_precision_of_search_directions_changes_neither_state_nor_subgradient() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
         for friction in [0.0, 0.3] {
-            let scene = Scene { mesh: [6; 3], subdomains: [2; 3], friction, ..scene.clone() };
+            let scene = scene.clone().with_bricks([6; 3], [2; 3]).with_friction(friction);
             let (label, control) = (format!("{} friction {friction}", scene.name), bent(&scene));
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
             let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
@@ -92,7 +86,7 @@ fn single_precision_of_search_directions_changes_neither_state_nor_subgradient()
                 let state = solver.solve(control.as_slice(), None, 0.0).unwrap();
                 let adjoint = solver.sensitivities(&state.solution, &dual, 1e-11).unwrap();
                 let products = state.work().dual_operator_applications;
-                (state.forces, adjoint.heights, products)
+                (state.forces, adjoint.positions.concat(), products)
             };
             let (mixed, mixed_slopes, mixed_products) = solve(Precision::Mixed);
             let (double, double_slopes, double_products) = solve(Precision::Double);
@@ -114,7 +108,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (shape, state) = solve(hertz().unwrap(), SolverKind::Newton, 6, 2);
-            let dual = Vector::from_fn(shape.problem().boundary.dual_dimension(), |i, _| (0.7 * i as f64).cos());
+            let dual = Vector::from_fn(shape.problem().boundary.row_count, |i, _| (0.7 * i as f64).cos());
             let control = bent(&shape.problem().scene);
             let slope = shape.coderivative(&control, &state, &dual).unwrap();
             (state.forces.normal.clone(), slope)
@@ -146,9 +140,9 @@ fn warm_start_ends_at_the_same_state() {
 /// the rounding of its jumps must not be taken for a motion.
 #[test]
 fn a_motion_without_jumps_changes_no_force() {
-    let mut scene = Scene { friction: 0.0, ..signorini().unwrap() };
-    scene.lower.supports = vec![Support { face: Face::Bottom, components: [true, false, true] }];
-    scene.lower.loads = vec![Load { face: Face::X2Max, traction: [0.0, 0.0, 3000.0] }];
+    let mut scene = signorini().unwrap().with_friction(0.0);
+    scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true, false, true])];
+    scene.lower.loads = vec![Load::traction(BlockFace::X2Max, [0.0, 0.0, 3000.0])];
     scene.counter_surface = CounterSurface::Sphere { apex: 100.1, radius: 1e4, centre: [0.0; 2] };
     let (_, torn) = solve(scene.clone(), SolverKind::Newton, 4, 2);
     let (_, direct) = solve(scene, SolverKind::Direct, 4, 2);

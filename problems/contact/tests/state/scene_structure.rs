@@ -1,9 +1,9 @@
 //! What a scene does not need is not there; what cannot be in equilibrium is refused; certificates hold.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{Configuration, ContactProblem, ContactStatus};
+use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, ContactStatus};
 use contact::error::{ContactError, SceneError};
 use contact::linear::vector::norm;
 use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
@@ -12,19 +12,16 @@ use contact::tfeti::{TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use std::sync::Arc;
 
-fn small(mut scene: Scene, mesh: usize, subdomains: usize) -> Scene {
-    scene.mesh = [mesh; 3];
-    scene.subdomains = [subdomains; 3];
-    scene
+fn small(scene: Scene, bricks: usize, subdomains: usize) -> Scene {
+    scene.with_bricks([bricks; 3], [subdomains; 3])
 }
 
 #[test]
 fn no_friction_means_no_tangential_multipliers() {
-    let scene = Scene { friction: 0.0, ..small(signorini().unwrap(), 6, 2) };
+    let scene = small(signorini().unwrap(), 6, 2).with_friction(0.0);
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
     let boundary = &shape.problem().boundary;
     assert_eq!(boundary.row_count, boundary.points.len());
-    assert_eq!(boundary.dual_dimension(), boundary.points.len());
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
     assert!(state.forces.tangential.is_empty() && state.forces.slip.is_empty());
     assert!(shape.left_out().iter().any(|text| text.contains("tangential")));
@@ -39,7 +36,7 @@ fn one_subdomain_means_no_gluing_and_more_mean_the_known_rows() {
     assert_eq!(whole.model().constraints.equality_count, 98);
     let problem = Arc::new(ContactProblem::new(small(signorini().unwrap(), 12, 2)).unwrap());
     let torn = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
-    assert_eq!(torn.model().total_dofs, 8232);
+    assert_eq!(torn.sizes()[0], 8232);
     assert_eq!(torn.model().constraints.equality_count, 1979);
 }
 
@@ -47,17 +44,18 @@ fn one_subdomain_means_no_gluing_and_more_mean_the_known_rows() {
 fn rows_are_orthonormal_and_weights_invert_them() {
     let problem = Arc::new(ContactProblem::new(small(hertz().unwrap(), 4, 2)).unwrap());
     let solver = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
-    let constraints = &solver.model().constraints;
+    let system = solver.model().factorize(&Configuration::new(&problem, &[9.9; 36]).unwrap()).unwrap();
     let dense = |row: usize, weighted: bool| {
-        let mut values = vec![0.0; solver.model().total_dofs];
-        let source = if weighted { &constraints.weighted } else { &constraints.rows };
+        let mut values = vec![0.0; solver.sizes()[0]];
+        let source = if weighted { &system.rows.weighted } else { &system.rows.rows };
         source.row(row).for_each(|(dof, value)| values[dof] += value);
         values
     };
-    for row in 0..constraints.row_count() {
+    let count = solver.model().constraints.row_count();
+    for row in 0..count {
         let left = dense(row, false);
         assert!((norm(&left) - 1.0).abs() < 1e-14);
-        for other in 0..constraints.row_count() {
+        for other in 0..count {
             let product: f64 = left.iter().zip(dense(other, true)).map(|(a, b)| a * b).sum();
             let expected = f64::from(u8::from(row == other));
             assert!((product - expected).abs() < 1e-14, "rows {row}, {other}: {product}");
@@ -69,10 +67,9 @@ fn rows_are_orthonormal_and_weights_invert_them() {
 fn rigid_modes_are_the_kernel_and_the_inverse_is_a_generalised_one() {
     let problem = Arc::new(ContactProblem::new(small(signorini().unwrap(), 6, 2)).unwrap());
     let solver = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
-    let blocks = problem.blocks(&[99.0; 36]).unwrap();
-    let system = solver.model().factorize(&blocks).unwrap();
-    let pattern = &solver.model().pattern.pattern;
-    for factors in &system.parts {
+    let system = solver.model().factorize(&Configuration::new(&problem, &[99.0; 36]).unwrap()).unwrap();
+    for (index, factors) in system.parts.iter().enumerate() {
+        let pattern = &solver.model().piece(index).1.pattern.lower;
         let size = pattern.dimension();
         let scale = factors.stiffness.iter().map(|value| value.abs()).fold(0.0, f64::max);
         let mut image = vec![0.0; size];
@@ -107,7 +104,7 @@ fn unchanged_body_is_factored_once() {
 #[test]
 fn a_load_that_pulls_away_is_refused_naming_the_direction() {
     let mut scene = small(signorini().unwrap(), 4, 2);
-    scene.lower.loads[0].traction = [0.0, 0.0, -3000.0];
+    scene.lower.loads[0] = scene.lower.loads[0].scaled(-1.0);
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let error = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap_err().to_string();
@@ -119,26 +116,13 @@ fn a_load_that_pulls_away_is_refused_naming_the_direction() {
 /// Two blocks of equal size, the upper one pressed onto the lower, whose base is fixed. Contact holds the upper one.
 fn plates(friction: f64, push: f64) -> Scene {
     let material = Material::new(1000.0, 0.0).unwrap();
+    let loads = vec![Load::traction(BlockFace::Top, [push, 0.0, -1.0])];
     Scene {
         name: "plates".into(),
-        size: [10.0, 10.0],
-        lower: BodyScene {
-            material,
-            supports: vec![Support { face: Face::Bottom, components: [true; 3] }],
-            loads: vec![],
-        },
-        upper: Some(UpperBody {
-            body: BodyScene {
-                material,
-                supports: vec![],
-                loads: vec![Load { face: Face::Top, traction: [push, 0.0, -1.0] }],
-            },
-            top: 20.0,
-        }),
+        lower: BodyScene::new(material, vec![Support::new(BlockFace::Bottom, [true; 3])], vec![]),
+        upper: Some(UpperBody { body: BodyScene::new(material, vec![], loads), top: 20.0 }),
         counter_surface: CounterSurface::Plane { height: 10.0 },
-        friction,
-        start_height: 10.0,
-        ..small(hertz().unwrap(), 4, 2)
+        ..small(hertz().unwrap(), 4, 2).with_friction(friction)
     }
 }
 
@@ -162,8 +146,8 @@ fn unloaded_free_motions_are_grounded() {
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(plates(0.0, 0.0), kind).unwrap();
         let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-        for (force, point) in state.forces.normal.iter().zip(&shape.problem().boundary.points) {
-            assert!((force / point.area - 1.0).abs() < 1e-9, "{}", force / point.area);
+        for pressure in state.rows.pressures(&state.forces.normal) {
+            assert!((pressure - 1.0).abs() < 1e-9, "{pressure}");
         }
         let shape = ContactShape::new(plates(0.0, 0.01), kind).unwrap();
         assert!(shape.solve(&shape.start(), None, Accuracy::TIGHTEST).is_err());
@@ -173,12 +157,13 @@ fn unloaded_free_motions_are_grounded() {
 /// Supports hold the motions that contact holds as well, and leave two free, unloaded and grounded.
 #[test]
 fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
-    for (mesh, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {
-        let mut scene = Scene { friction: 0.0, mesh, subdomains: [subdomains; 3], ..signorini().unwrap() };
-        let support = |face, components| Support { face, components };
-        scene.lower.supports =
-            vec![support(Face::Bottom, [false, false, true]), support(Face::X2Min, [true, false, false])];
-        scene.lower.loads = vec![Load { face: Face::X1Min, traction: [0.0, 0.0, 3000.0] }];
+    for (bricks, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {
+        let mut scene = signorini().unwrap().with_bricks(bricks, [subdomains; 3]).with_friction(0.0);
+        scene.lower.supports = vec![
+            Support::new(BlockFace::Bottom, [false, false, true]),
+            Support::new(BlockFace::X2Min, [true, false, false]),
+        ];
+        scene.lower.loads = vec![Load::traction(BlockFace::X1Min, [0.0, 0.0, 3000.0])];
         scene.counter_surface = CounterSurface::Plane { height: 100.001 };
         let force = |kind| {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
@@ -187,7 +172,7 @@ fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
         let direct = force(SolverKind::Direct);
         for kind in [SolverKind::Newton, SolverKind::AugmentedLagrangian] {
             let torn = force(kind);
-            assert!((torn / direct - 1.0).abs() < 1e-8, "{mesh:?} {kind:?}: {torn} {direct}");
+            assert!((torn / direct - 1.0).abs() < 1e-8, "{bricks:?} {kind:?}: {torn} {direct}");
         }
     }
 }
@@ -196,16 +181,18 @@ fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
 #[test]
 fn forces_in_balance_are_never_refused() {
     for index in 0..24 {
-        let mut scene = Scene { size: [1.0; 2], mesh: [3; 3], subdomains: [1; 3], friction: 0.3, ..hertz().unwrap() };
+        let scene = small(hertz().unwrap(), 3, 1).with_blocks(|blocks| blocks.size = [1.0; 2]);
+        let mut scene = scene.with_heights(|heights| {
+            heights.start_height = 1.0;
+            heights.bounds = ShapeBounds { minimum_height: 0.5, slope: 5.0, volume: [0.0, 10.0] };
+        });
         let gap = 1e-6 * 10.0_f64.powf(f64::from(index) / 6.0);
         scene.counter_surface = CounterSurface::Plane { height: 1.0 + gap };
-        (scene.start_height, scene.bounds) =
-            (1.0, ShapeBounds { minimum_height: 0.5, slope: 5.0, volume: [0.0, 10.0] });
         scene.lower.supports.clear();
-        scene.lower.loads = vec![Load { face: Face::Bottom, traction: [0.0, 0.0, 1.0] }];
+        scene.lower.loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 1.0])];
         if let Some(upper) = &mut scene.upper {
             upper.body.supports.clear();
-            upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+            upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
             upper.top = 2.0 + gap;
         }
         let problem = ContactProblem::new(scene).unwrap();
@@ -219,14 +206,14 @@ fn forces_in_balance_are_never_refused() {
 /// converges slowly there.
 #[test]
 fn statics_refuse_what_is_beyond_friction_alone() {
-    for (friction, mesh) in [(0.02, [2, 3, 5]), (1e-3, [1; 3]), (0.3, [3; 3])] {
+    for (friction, bricks) in [(0.02, [2, 3, 5]), (1e-3, [1; 3]), (0.3, [3; 3])] {
         for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-3] {
-            let mut scene = Scene { mesh, subdomains: [1; 3], friction, ..hertz().unwrap() };
+            let mut scene = hertz().unwrap().with_bricks(bricks, [1; 3]).with_friction(friction);
             scene.counter_surface = CounterSurface::Plane { height: 10.0 };
-            scene.lower.supports = vec![Support { face: Face::Bottom, components: [true; 3] }];
+            scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true; 3])];
             if let Some(upper) = &mut scene.upper {
                 upper.body.supports.clear();
-                upper.body.loads = vec![Load { face: Face::Top, traction: [100.0 * friction * share, 0.0, -100.0] }];
+                upper.body.loads = vec![Load::traction(BlockFace::Top, [100.0 * friction * share, 0.0, -100.0])];
             }
             let problem = ContactProblem::new(scene).unwrap();
             let refused = Configuration::new(&problem, &[10.0; 36]).map(|_| ());
@@ -244,8 +231,8 @@ fn patch_test_uniform_pressure_with_edge_and_corner_weights() {
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-        for (force, point) in state.forces.normal.iter().zip(&shape.problem().boundary.points) {
-            assert!((force / point.area / 3000.0 - 1.0).abs() < 1e-11, "{kind:?} {}", force / point.area);
+        for pressure in state.rows.pressures(&state.forces.normal) {
+            assert!((pressure / 3000.0 - 1.0).abs() < 1e-11, "{kind:?} {pressure}");
         }
         assert!(state.forces.status.iter().all(|status| *status == ContactStatus::Stick));
     }
@@ -272,9 +259,9 @@ fn bad_scenes_are_refused_naming_the_field() {
     };
     refused(small(signorini().unwrap(), 0, 1), "mesh");
     refused(small(signorini().unwrap(), 6, 4), "subdomains");
-    refused(Scene { friction: -0.1, ..signorini().unwrap() }, "friction");
-    refused(Scene { friction: f64::NAN, ..signorini().unwrap() }, "friction");
-    refused(Scene { control_points: [3, 3], ..signorini().unwrap() }, "degree");
+    refused(signorini().unwrap().with_friction(-0.1), "friction");
+    refused(signorini().unwrap().with_friction(f64::NAN), "friction");
+    refused(signorini().unwrap().with_heights(|heights| heights.control_points = [3, 3]), "degree");
     assert!(matches!(Material::new(1.0, 0.5), Err(SceneError::OutOfRange { .. })));
     assert!(matches!(Material::new(-1.0, 0.3), Err(SceneError::OutOfRange { .. })));
 }
@@ -283,10 +270,12 @@ fn bad_scenes_are_refused_naming_the_field() {
 fn folded_shape_is_refused_naming_the_element() {
     let problem = ContactProblem::new(small(signorini().unwrap(), 4, 1)).unwrap();
     let mut controls = vec![100.0; 36];
-    controls[0] = -50.0;
-    match problem.blocks(&controls) {
-        Err(ContactError::InvertedElement { body: 1, i: 0, j: 0, .. }) => {}
-        other => panic!("{other:?}"),
+    for height in [0.0, -50.0] {
+        controls[0] = height;
+        match problem.positions(&controls) {
+            Err(ContactError::InvertedElement { body, cell: 0, .. }) if body == "lower" => {}
+            other => panic!("{other:?}"),
+        }
     }
     let shape = ContactShape::new(small(signorini().unwrap(), 4, 1), SolverKind::Newton).unwrap();
     assert!(shape.solve(&Vector::from_vec(controls), None, Accuracy::TIGHTEST).is_err());

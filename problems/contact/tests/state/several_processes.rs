@@ -1,6 +1,7 @@
 //! Several processes, played by threads that share nothing but pieces of subdomains: each factors and solves its own,
 //! and all end at the state of a single process, to the last bit.
 
+use crate::common::{start_height, unit};
 use crate::rank::Rank;
 use contact::communication::Communication;
 use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState};
@@ -11,10 +12,11 @@ use std::sync::Arc;
 
 #[derive(Debug, Clone, PartialEq)]
 struct Outcome {
-    forces: [Vec<f64>; 2],
-    heights: Vec<f64>,
+    forces: Vec<f64>,
+    tangential: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
     /// Sensitivities of a function of the displacements.
-    heights_by_displacements: Vec<f64>,
+    positions_by_displacements: Vec<[f64; 3]>,
     tangents: Vec<Vec<f64>>,
     /// At process 0 alone.
     bodies: Vec<SolvedBody>,
@@ -23,33 +25,32 @@ struct Outcome {
     products: usize,
 }
 
-fn solve(scene: &Scene, clusters: [usize; 3], communication: Option<Rank>, method: DualMethod) -> Outcome {
+fn solve(scene: &Scene, clusters: Option<usize>, communication: Option<Rank>, method: DualMethod) -> Outcome {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
     let mut options = TornOptions { clusters, ..TornOptions::default() };
     if let Some(rank) = communication {
         options.communication = Arc::new(rank);
     }
     let solver = TotalFeti::new(Arc::clone(&problem), options).unwrap().with_method(method);
-    let controls = vec![scene.start_height; 36];
-    let first = solver.solve(&controls, None, 1e-6).unwrap();
-    let moved: Vec<f64> = (0..36).map(|index| scene.start_height - 0.01 * (index as f64).sin()).collect();
+    let height = start_height(scene);
+    let first = solver.solve(&[height; 36], None, 1e-6).unwrap();
+    let moved: Vec<f64> = (0..36).map(|index| height - 0.01 * (index as f64).sin()).collect();
     let state = solver.solve(&moved, Some(&first.solution.warm_start()), 1e-10).unwrap();
     let (forces, work) = (state.forces.clone(), state.work());
     let state = state.solution;
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.3 * row as f64).sin()).collect();
-    let heights = solver.sensitivities(&state, &dual, 1e-11).unwrap().heights;
+    let positions = solver.sensitivities(&state, &dual, 1e-11).unwrap().positions;
     let loads = (0..problem.displacement_count()).map(|dof| (0.7 * dof as f64).cos());
     let both: Vec<f64> = dual.iter().copied().chain(loads).collect();
-    let heights_by_displacements = solver.sensitivities(&state, &both, 1e-11).unwrap().heights;
-    let changes: Vec<Vec<f64>> = (0..3)
-        .map(|change| (0..problem.grid.column_count()).map(|node| f64::from(node % 3 == change)).collect())
-        .collect();
+    let positions_by_displacements = solver.sensitivities(&state, &both, 1e-11).unwrap().positions;
+    let changes: Vec<Vec<f64>> = [0, 17, 35].map(|control| unit(36, control)).into();
     let tangents = solver.tangents(&state, &changes, 1e-6).unwrap().forces;
     let contraction = solver.diagnose(&state).unwrap().contraction;
     Outcome {
-        forces: [forces.normal, forces.tangential.as_flattened().to_vec()],
-        heights,
-        heights_by_displacements,
+        forces: forces.normal,
+        tangential: forces.tangential,
+        positions,
+        positions_by_displacements,
         tangents,
         bodies: solver.bodies(&state).unwrap(),
         contraction,
@@ -70,16 +71,16 @@ fn on_threads<T: Send + 'static>(
 fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
     let newton = DualMethod::Newton(Recycling::On);
     let cases = [
-        (signorini(), [2; 3], [1; 3], newton),
-        (hertz(), [2, 1, 2], [1; 3], newton),
-        (signorini(), [1; 3], [1; 3], newton),
-        (hertz(), [2, 2, 1], [1; 3], DualMethod::Newton(Recycling::Off)),
-        (signorini(), [2, 2, 1], [1; 3], DualMethod::SuccessiveApproximations),
-        (hertz(), [2; 3], [1, 2, 1], newton),
-        (signorini(), [2; 3], [2, 1, 1], DualMethod::SuccessiveApproximations),
+        (signorini(), [2; 3], None, newton),
+        (hertz(), [2, 1, 2], None, newton),
+        (signorini(), [1; 3], None, newton),
+        (hertz(), [2, 2, 1], None, DualMethod::Newton(Recycling::Off)),
+        (signorini(), [2, 2, 1], None, DualMethod::SuccessiveApproximations),
+        (hertz(), [2; 3], Some(8), newton),
+        (signorini(), [2; 3], Some(4), DualMethod::SuccessiveApproximations),
     ];
     for (scene, subdomains, clusters, method) in cases {
-        let scene = Scene { mesh: [4; 3], subdomains, ..scene.unwrap() };
+        let scene = scene.unwrap().with_bricks([4; 3], subdomains);
         let alone = solve(&scene, clusters, None, method);
         for (processes, threads) in [(1, 1), (2, 2), (3, 1), (4, 1)] {
             let ranks = Rank::all(processes).map(|rank| {
@@ -99,9 +100,9 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
 fn a_failure_in_one_process_ends_the_others() {
     let handles = Rank::all(3).enumerate().map(|(number, rank)| {
         on_threads(1, move || {
-            let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
+            let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
             // The bodies of the second process are so flat that no factor of theirs has a digit.
-            let controls = vec![if number == 1 { 1e-9 } else { scene.start_height }; 36];
+            let controls = vec![if number == 1 { 1e-9 } else { start_height(&scene) }; 36];
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
             let options = TornOptions { communication: Arc::new(rank), ..TornOptions::default() };
             let solver = TotalFeti::new(problem, options).unwrap();

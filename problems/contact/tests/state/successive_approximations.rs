@@ -1,28 +1,27 @@
 //! The paper's path against the Newton path on small scenes: states, subgradients, step counts, limits.
 
-use contact::body::mesh::Face;
+use crate::common::start_height;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::{
     ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, SolverState, Work,
 };
 use contact::error::ContactError;
 use contact::qp::QpError;
-use contact::scene::{Scene, Support, hertz, signorini};
+use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{
     AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornOptions, TornState, TotalFeti,
 };
 use std::sync::Arc;
 
-fn small(mut scene: Scene, mesh: usize, subdomains: usize, friction: f64) -> Arc<ContactProblem> {
-    scene.mesh = [mesh; 3];
-    scene.subdomains = [subdomains; 3];
-    scene.friction = friction;
+fn small(scene: Scene, bricks: usize, subdomains: usize, friction: f64) -> Arc<ContactProblem> {
+    let scene = scene.with_bricks([bricks; 3], [subdomains; 3]).with_friction(friction);
     Arc::new(ContactProblem::new(scene).expect("valid scene"))
 }
 
 /// A gently wavy surface around the start height.
 fn controls(problem: &ContactProblem) -> Vec<f64> {
-    let height = problem.scene.start_height;
+    let height = start_height(&problem.scene);
     (0..36).map(|index| height * (1.0 + 2e-3 * (2.3 * index as f64).sin())).collect()
 }
 
@@ -73,7 +72,7 @@ fn agrees(problem: &Arc<ContactProblem>, kind: PreconditionerKind, precondition:
     assert!(paper.forces.residuals.newton <= 1e-9 && paper.forces.residuals.equilibrium < 1e-10);
     assert_eq!(paper.work.newton_steps, paper.counts.fixed_point_steps);
     let direction: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
-    let derivative = |state| solver.sensitivities(state, &direction, 1e-10).expect("adjoint").heights;
+    let derivative = |state| solver.sensitivities(state, &direction, 1e-10).expect("adjoint").positions.concat();
     let (ours, theirs) = (derivative(&paper.state), derivative(&newton_state));
     let size = theirs.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     assert!(ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() < 1e-5 * size));
@@ -103,9 +102,8 @@ fn two_bodies() {
 fn grounded_motion_common_to_both_bodies() {
     // Nothing holds the translation of both bodies along x₂: contact sees only their difference.
     let mut scene = hertz().expect("preset");
-    scene.lower.supports.retain(|support: &Support| support.face != Face::X2Min);
-    if let Some(upper) = &mut scene.upper {
-        upper.body.supports.retain(|support| support.face != Face::X2Min);
+    for body in scene.bodies_mut() {
+        body.supports.retain(|support| support.face != BlockFace::X2Min.name());
     }
     let solved = agrees(&small(scene, 4, 2, 0.3), PreconditionerKind::Dirichlet, true);
     assert!(solved.forces.counts().stick + solved.forces.counts().slip > 0);

@@ -84,7 +84,8 @@ impl<T: Scalar> CellNodes<T> {
 }
 
 impl CellNodes<f64> {
-    /// The smallest det(∂x/∂ξ) at the integration points, mm³ from the reference cell; not finite for bad positions.
+    /// The smallest det(∂x/∂ξ) at the integration points, and at the corners of a hexahedron, where it folds first; mm³
+    /// from the reference cell, not finite for bad positions.
     pub fn smallest_determinant(&self) -> f64 {
         let smallest = |volumes: &mut dyn Iterator<Item = f64>| {
             volumes.fold(
@@ -93,7 +94,10 @@ impl CellNodes<f64> {
             )
         };
         match self {
-            Self::Hex8(nodes) => smallest(&mut hex8::gauss_points(nodes).iter().map(|point| point.volume)),
+            Self::Hex8(nodes) => {
+                let points = hex8::gauss_points(nodes).into_iter().chain(hex8::corners(nodes));
+                smallest(&mut points.map(|point| point.volume))
+            }
             Self::Tet10(nodes) => 24.0 * smallest(&mut tet10::gauss_points(nodes).iter().map(|point| point.volume)),
         }
     }

@@ -40,6 +40,11 @@ pub(crate) fn values(point: usize) -> [f64; 8] {
     CORNERS.map(|s| (1.0 + s[0] * xi[0]) * (1.0 + s[1] * xi[1]) * (1.0 + s[2] * xi[2]) / 8.0)
 }
 
+/// The corners, weighed like Gauss points; not finite where the cell is flat.
+pub(crate) fn corners<T: Scalar>(nodes: &[[T; 3]; 8]) -> [GaussPoint<T, 8>; 8] {
+    CORNERS.map(|corner| GaussPoint::new(nodes, &reference_gradients(corner), 1.0))
+}
+
 /// The centre, with the volume of the cube in ξ as weight.
 pub fn centre<T: Scalar>(nodes: &[[T; 3]; 8]) -> GaussPoint<T, 8> {
     GaussPoint::new(nodes, &reference_gradients([0.0; 3]), 8.0)

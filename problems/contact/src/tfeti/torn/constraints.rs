@@ -115,6 +115,7 @@ impl Constraints {
         let mut touched = vec![false; own];
         let mut touch = |dof: usize| touched.get_mut(dof.wrapping_sub(first)).into_iter().for_each(|t| *t = true);
         all.equality.iter().flat_map(|row| &row.entries).for_each(|(dof, _)| touch(*dof));
+        all.joined.iter().flatten().flatten().for_each(|(dof, _)| touch(*dof));
         dofs.iter().flatten().for_each(|&dof| touch(dof));
         let owners = boundary.points.iter().zip(&node_owners);
         let contact_owners: Vec<usize> =

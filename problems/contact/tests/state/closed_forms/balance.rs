@@ -1,8 +1,9 @@
 //! What every state must satisfy, whatever the mesh: balance, complementarity, friction cone, dissipation.
 
-use super::setting::{ALL, block, load, solve, support};
+use super::setting::{ALL, block, load, places, solve, support, torn};
+use crate::common::length;
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody, hertz, signorini};
 use nonsmooth::{Accuracy, StateSolver};
@@ -11,24 +12,26 @@ fn cross(x: [f64; 3], f: [f64; 3]) -> [f64; 3] {
     [x[1] * f[2] - x[2] * f[1], x[2] * f[0] - x[0] * f[2], x[0] * f[1] - x[1] * f[0]]
 }
 
+/// Loads of the plate, MPa.
+const ON_TOP: [f64; 3] = [0.05, -0.03, -1.0];
+const ON_SIDE: [f64; 3] = [0.02, 0.01, -0.1];
+
 /// A plate on a block, held by contact and friction alone.
 fn plate() -> Scene {
     let material = Material::new(1.0e3, 0.3).unwrap();
-    let mut scene = block([10.0; 2], 10.0, [4; 3], material, CounterSurface::Plane { height: 10.0 });
-    scene.subdomains = [2; 3];
-    scene.friction = 0.4;
-    scene.lower.supports = vec![support(Face::Bottom, ALL)];
-    let loads = vec![load(Face::Top, [0.05, -0.03, -1.0]), load(Face::X1Max, [0.02, 0.01, -0.1])];
-    scene.upper = Some(UpperBody { body: BodyScene { material, supports: vec![], loads }, top: 20.0 });
+    let scene = block([10.0; 2], 10.0, [4; 3], material, CounterSurface::Plane { height: 10.0 });
+    let mut scene = torn(scene, [2; 3]).with_friction(0.4);
+    scene.lower.supports = vec![support(BlockFace::Bottom, ALL)];
+    let loads = vec![load(BlockFace::Top, ON_TOP), load(BlockFace::X1Max, ON_SIDE)];
+    scene.upper = Some(UpperBody { body: BodyScene::new(material, vec![], loads), top: 20.0 });
     scene
 }
 
 #[test]
 fn contact_forces_balance_the_loads_of_a_free_body() {
     let scene = plate();
-    let loads = &scene.upper.as_ref().unwrap().body.loads;
     // Both loaded faces measure 100 mm².
-    let resultants = [([5.0, 5.0, 20.0], loads[0].traction), ([10.0, 5.0, 15.0], loads[1].traction)];
+    let resultants = [([5.0, 5.0, 20.0], ON_TOP), ([10.0, 5.0, 15.0], ON_SIDE)];
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let (shape, state) = solve(&scene, kind);
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
@@ -40,10 +43,9 @@ fn contact_forces_balance_the_loads_of_a_free_body() {
         for (x, traction) in resultants {
             add(x, traction.map(|t| 100.0 * t));
         }
-        for (index, point) in shape.problem().boundary.points.iter().enumerate() {
-            let [x1, x2] = shape.problem().grid.position(point.position[0], point.position[1]);
-            let [t1, t2] = state.forces.tangential[index];
-            add([x1, x2, 10.0], [t1, t2, state.forces.normal[index]]);
+        for (index, place) in places(&shape).into_iter().enumerate() {
+            let [t1, t2, t3] = state.forces.tangential[index];
+            add(place, [t1, t2, t3 + state.forces.normal[index]]);
         }
         let worst =
             |values: [f64; 3], scale: f64| values.into_iter().map(|value| value.abs() / scale).fold(0.0, f64::max);
@@ -55,8 +57,8 @@ fn contact_forces_balance_the_loads_of_a_free_body() {
 
 #[test]
 fn complementarity_cone_and_dissipation_at_every_node() {
-    for mut scene in [signorini().unwrap(), hertz().unwrap()] {
-        scene.mesh = [6; 3];
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let scene = scene.with_bricks([6; 3], [2; 3]);
         for kind in [SolverKind::Newton, SolverKind::Direct] {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
             let bend = nonsmooth::verify::seeded_direction(36, 3);
@@ -64,14 +66,14 @@ fn complementarity_cone_and_dissipation_at_every_node() {
             let forces = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap().forces;
             let largest = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
             let (force, gap) = (largest(&forces.normal), largest(&forces.opening));
-            let slip = forces.slip.iter().map(|slip| slip[0].hypot(slip[1])).fold(0.0, f64::max);
+            let slip = forces.slip.iter().map(|slip| length(*slip)).fold(0.0, f64::max);
             let (mut complementarity, mut cone, mut dissipated, mut least) = (0.0_f64, 0.0_f64, 0.0, 0.0_f64);
             for (index, &normal) in forces.normal.iter().enumerate() {
                 assert!(normal >= -1e-11 * force && forces.opening[index] <= 1e-10 * gap);
                 complementarity = complementarity.max((normal * forces.opening[index]).abs() / (force * gap));
-                let ([t1, t2], [s1, s2]) = (forces.tangential[index], forces.slip[index]);
-                cone = cone.max((t1.hypot(t2) - scene.friction * normal) / force);
-                let power = t1 * s1 + t2 * s2;
+                let (tangential, jump) = (forces.tangential[index], forces.slip[index]);
+                cone = cone.max((length(tangential) - scene.contact.friction * normal) / force);
+                let power: f64 = tangential.iter().zip(jump).map(|(force, slip)| force * slip).sum();
                 least = least.min(power / (force * slip));
                 dissipated += power;
             }
@@ -89,11 +91,9 @@ fn complementarity_cone_and_dissipation_at_every_node() {
 fn bodies_that_just_touch_without_a_load_have_no_forces_and_no_displacements() {
     let material = Material::new(2.1e5, 0.3).unwrap();
     // Overlaps by two roundings of the height, and a body that stands on supports alone.
-    let mut scene =
-        block([20.0; 2], 20.0, [4; 3], material, CounterSurface::Plane { height: 20.0 * (1.0 - 2.0 * f64::EPSILON) });
-    scene.subdomains = [2; 3];
-    scene.friction = 0.3;
-    scene.lower.supports = vec![support(Face::Bottom, ALL)];
+    let plane = CounterSurface::Plane { height: 20.0 * (1.0 - 2.0 * f64::EPSILON) };
+    let mut scene = torn(block([20.0; 2], 20.0, [4; 3], material, plane), [2; 3]).with_friction(0.3);
+    scene.lower.supports = vec![support(BlockFace::Bottom, ALL)];
     let kinds = [SolverKind::Auto, SolverKind::Newton, SolverKind::Direct, SolverKind::AugmentedLagrangian];
     for kind in kinds {
         let (shape, state) = solve(&scene, kind);

@@ -6,9 +6,9 @@
 //! ν = 0 and a height far below the length of a brick make the column of bricks that bar, up to (height/length of a
 //! brick).
 
-use super::setting::{SECOND, block, load, solve, support};
+use super::setting::{SECOND, block, load, pressures, solve, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure};
 use contact::equilibrium::ContactStatus;
@@ -26,26 +26,24 @@ const SLIP_LENGTH: f64 = 5.0 * (12.0 + 1.0 / 3.0);
 
 fn bar(bricks: usize) -> Scene {
     let material = Material::new(MODULUS, 0.0).unwrap();
-    let mut scene = block([LENGTH, WIDTH], HEIGHT, [bricks, 1, 1], material, CounterSurface::Plane { height: HEIGHT });
-    scene.friction = FRICTION;
-    scene.lower.supports = vec![support(Face::X2Min, SECOND), support(Face::X2Max, SECOND)];
+    let scene = block([LENGTH, WIDTH], HEIGHT, [bricks, 1, 1], material, CounterSurface::Plane { height: HEIGHT });
+    let mut scene = scene.with_friction(FRICTION);
+    scene.lower.supports = vec![support(BlockFace::X2Min, SECOND), support(BlockFace::X2Max, SECOND)];
     let pull = FRICTION * PRESSURE * SLIP_LENGTH / HEIGHT;
-    scene.lower.loads = vec![load(Face::Bottom, [0.0, 0.0, PRESSURE]), load(Face::X1Max, [pull, 0.0, 0.0])];
+    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE]), load(BlockFace::X1Max, [pull, 0.0, 0.0])];
     scene
 }
 
 /// Slip length by the friction forces that are on the cone, mm; largest error of the slip over its largest value.
 fn measure(bricks: usize) -> (f64, f64) {
     let (shape, state) = solve(&bar(bricks), SolverKind::Direct);
-    let problem = shape.problem();
     let friction_per_length = FRICTION * PRESSURE * WIDTH;
     let (mut slipping, mut worst) = (0.0, 0.0_f64);
     let exact =
         |x: f64| friction_per_length * (x - LENGTH + SLIP_LENGTH).max(0.0).powi(2) / (2.0 * MODULUS * WIDTH * HEIGHT);
-    for (index, point) in problem.boundary.points.iter().enumerate() {
-        let x = problem.grid.position(point.position[0], point.position[1])[0];
+    for (index, ([x, _], area, _)) in pressures(&shape, &state).into_iter().enumerate() {
         if state.forces.status[index] == ContactStatus::Slip {
-            slipping += point.area / WIDTH;
+            slipping += area / WIDTH;
         }
         worst = worst.max((state.forces.slip[index][0] - exact(x)).abs() / exact(LENGTH));
     }

@@ -6,12 +6,13 @@
 
 use super::setting::{FIRST, SECOND, THIRD, block, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::direct::CondensationPattern;
 use contact::equilibrium::ContactProblem;
 use contact::scene::CounterSurface;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 const SIDE: f64 = 10.0;
 const MODULUS: f64 = 1.0e4;
@@ -22,16 +23,19 @@ fn fitted(bricks: usize) -> (f64, f64) {
     let material = Material::new(MODULUS, POISSON).unwrap();
     let mut scene = block([SIDE; 2], SIDE, [bricks; 3], material, CounterSurface::Plane { height: SIDE });
     scene.lower.supports =
-        vec![support(Face::X1Min, FIRST), support(Face::X2Min, SECOND), support(Face::Bottom, THIRD)];
+        vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
+    let grid = scene.blocks().unwrap().grid();
     let problem = ContactProblem::new(scene).unwrap();
-    let pattern = CondensationPattern::new(&problem.grid, &problem.scene.lower, bricks).unwrap();
-    let body = pattern.condense(&problem.lower_block(&[SIDE; 4]).unwrap(), &problem.scene.lower).unwrap();
+    let (lower, positions) = (&problem.bodies[0], problem.positions(&[SIDE; 4]).unwrap());
+    let surface: Vec<u32> = problem.boundary.points.iter().map(|point| point.node).collect();
+    let pattern = Arc::new(CondensationPattern::new(lower, &surface).unwrap());
+    let body = pattern.condense(lower, &positions[0]).unwrap();
     // A force on the corner of the quarter is four times as large on the whole block.
-    let mut force = vec![0.0; 3 * problem.grid.column_count()];
+    let mut force = vec![0.0; 3 * surface.len()];
     force[2] = 0.25;
     let deflection = body.deflection(&force);
     let (mut rows, mut right) = (Vec::new(), Vec::new());
-    for (column, (i, j)) in problem.grid.columns().enumerate() {
+    for (column, (i, j)) in grid.columns().enumerate() {
         let r = SIDE / bricks as f64 * (i as f64).hypot(j as f64);
         if (0.2 * SIDE..=0.7 * SIDE).contains(&r) {
             // Scaled by r: the misfit is relative.

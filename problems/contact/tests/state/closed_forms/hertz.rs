@@ -5,9 +5,9 @@
 //! ```
 //! P is the resultant of the computed forces, so that the depth of the block does not matter much.
 
-use super::setting::{FIRST, SECOND, THIRD, block, pressures, solve, support};
+use super::setting::{FIRST, SECOND, THIRD, block, pressures, solve, support, torn};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::scene::{CounterSurface, Scene};
 use std::f64::consts::PI;
@@ -20,10 +20,9 @@ const POISSON: f64 = 0.3;
 fn indented(bricks: usize, depth: f64) -> Scene {
     let material = Material::new(MODULUS, POISSON).unwrap();
     let sphere = CounterSurface::Sphere { apex: SIDE - depth, radius: RADIUS, centre: [0.0; 2] };
-    let mut scene = block([SIDE, SIDE], SIDE, [bricks; 3], material, sphere);
-    scene.subdomains = [2; 3];
+    let mut scene = torn(block([SIDE, SIDE], SIDE, [bricks; 3], material, sphere), [2; 3]);
     scene.lower.supports =
-        vec![support(Face::X1Min, FIRST), support(Face::X2Min, SECOND), support(Face::Bottom, THIRD)];
+        vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
     scene
 }
 

@@ -1,7 +1,8 @@
 //! What Θ, ξ and the status must not notice: the unit of force, and the hand of a mirrored shape.
 
+use crate::common::start_height;
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
@@ -18,11 +19,8 @@ struct Outcome {
 
 fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let shape = ContactShape::new(scene.clone(), kind).unwrap();
-    let cost = PressureCost::new(
-        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
-        &shape.problem().boundary,
-    )
-    .unwrap();
+    let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+    let cost = PressureCost::new(measure, shape.problem()).unwrap();
     let objective = CompositeObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
@@ -32,25 +30,24 @@ fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
 
 fn scaled(scene: &Scene, factor: f64) -> Scene {
     let mut scene = scene.clone();
-    let bodies = std::iter::once(&mut scene.lower).chain(scene.upper.as_mut().map(|upper| &mut upper.body));
-    for body in bodies {
+    for body in scene.bodies_mut() {
         let material = body.material;
         body.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
         for load in &mut body.loads {
-            load.traction = load.traction.map(|traction| factor * traction);
+            *load = load.scaled(factor);
         }
     }
     scene
 }
 
 fn bent(scene: &Scene) -> Vector {
-    nonsmooth::verify::seeded_direction(36, 11).map(|bend| scene.start_height * (0.99 + 0.005 * bend))
+    nonsmooth::verify::seeded_direction(36, 11).map(|bend| start_height(scene) * (0.99 + 0.005 * bend))
 }
 
 #[test]
 fn stiffness_and_loads_scaled_together_change_the_unit_of_force_only() {
-    for mut scene in [signorini().unwrap(), hertz().unwrap()] {
-        scene.mesh = [6; 3];
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let scene = scene.with_bricks([6; 3], [2; 3]);
         let control = bent(&scene);
         for kind in [SolverKind::Newton, SolverKind::Direct] {
             let unit = evaluate(&scene, &control, kind);
@@ -84,11 +81,11 @@ fn mirrored(control: &Vector, swap: bool) -> Vector {
 fn a_mirrored_shape_has_the_mirrored_subgradient() {
     let mut other_hand = hertz().unwrap();
     let upper = other_hand.upper.as_mut().unwrap();
-    upper.body.loads[1] = Load { face: Face::X2Max, traction: [0.0, 500.0, -2000.0] };
+    upper.body.loads[1] = Load::traction(BlockFace::X2Max, [0.0, 500.0, -2000.0]);
     // The obstacle of Signorini's example is even about x₂ = b/2; the sphere does not know x₁ from x₂.
     let cases = [(signorini().unwrap(), signorini().unwrap(), false), (hertz().unwrap(), other_hand, true)];
-    for (mut scene, mut image, swap) in cases {
-        (scene.mesh, image.mesh) = ([6; 3], [6; 3]);
+    for (scene, image, swap) in cases {
+        let [scene, image] = [scene, image].map(|scene| scene.with_bricks([6; 3], [2; 3]));
         let control = bent(&scene);
         for kind in [SolverKind::Newton, SolverKind::Direct] {
             let here = evaluate(&scene, &control, kind).evaluation;

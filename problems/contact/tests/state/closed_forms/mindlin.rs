@@ -7,9 +7,10 @@
 //! Equal materials do not slip under P alone (no Dundurs coupling), so that the law in displacements gives the solution
 //! of the law in velocities.
 
-use super::setting::{ALL, SECOND, THIRD, block, load, pressures, solve, support};
+use super::setting::{ALL, SECOND, THIRD, block, load, pressures, solve, support, torn};
+use crate::common::length;
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::ContactStatus;
 use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody};
@@ -20,14 +21,13 @@ const FRICTION: f64 = 0.3;
 fn pushed(bricks: usize, traction: f64) -> Scene {
     let material = Material::new(1.0e4, 0.3).unwrap();
     let sphere = CounterSurface::Sphere { apex: SIDE - 0.15, radius: 100.0, centre: [SIDE, 0.0] };
-    let mut scene = block([2.0 * SIDE, SIDE], SIDE, [2 * bricks, bricks, bricks], material, sphere);
-    scene.subdomains = [4, 2, 2];
-    scene.friction = FRICTION;
-    let symmetry = support(Face::X2Min, SECOND);
-    scene.lower.supports = vec![symmetry, support(Face::Bottom, ALL)];
-    let supports = vec![symmetry, support(Face::Top, THIRD)];
-    let loads = vec![load(Face::Top, [traction, 0.0, 0.0])];
-    scene.upper = Some(UpperBody { body: BodyScene { material, supports, loads }, top: 2.0 * SIDE });
+    let scene = block([2.0 * SIDE, SIDE], SIDE, [2 * bricks, bricks, bricks], material, sphere);
+    let mut scene = torn(scene, [4, 2, 2]).with_friction(FRICTION);
+    let symmetry = support(BlockFace::X2Min, SECOND);
+    scene.lower.supports = vec![symmetry.clone(), support(BlockFace::Bottom, ALL)];
+    let supports = vec![symmetry, support(BlockFace::Top, THIRD)];
+    let loads = vec![load(BlockFace::Top, [traction, 0.0, 0.0])];
+    scene.upper = Some(UpperBody { body: BodyScene::new(material, supports, loads), top: 2.0 * SIDE });
     scene
 }
 
@@ -46,7 +46,7 @@ fn measure(bricks: usize, traction: f64) -> Measured {
     for (index, ([x, y], area, force)) in nodes.iter().enumerate() {
         let square = (x - SIDE).powi(2) + y * y;
         let traction = state.forces.tangential[index];
-        let along = traction[0].hypot(traction[1]);
+        let along = length(traction);
         push += traction[0];
         for (sums, value) in [(&mut normal, *force), (&mut tangential, along)] {
             sums[0] += value;

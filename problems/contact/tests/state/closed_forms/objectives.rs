@@ -1,8 +1,8 @@
 //! Objectives of a block that a plane presses on evenly: σ = p everywhere, σ_vM = p, and f·u = p² a b h/E.
 
-use super::setting::{FIRST, SECOND, block, load, support};
+use super::setting::{FIRST, SECOND, block, load, support, torn};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure, PressureCost, PressureMeasure, Region};
 use contact::scene::{CounterSurface, Scene};
@@ -16,24 +16,24 @@ const HEIGHT: f64 = 4.0;
 
 fn pressed() -> Scene {
     let material = Material::new(MODULUS, 0.31).unwrap();
-    let mut scene = block(SIZE, HEIGHT, [4, 2, 3], material, CounterSurface::Plane { height: HEIGHT });
-    scene.subdomains = [2, 1, 1];
-    scene.lower.supports = vec![support(Face::X1Min, FIRST), support(Face::X2Min, SECOND)];
-    scene.lower.loads = vec![load(Face::Bottom, [0.0, 0.0, PRESSURE])];
+    let scene = block(SIZE, HEIGHT, [4, 2, 3], material, CounterSurface::Plane { height: HEIGHT });
+    let mut scene = torn(scene, [2, 1, 1]);
+    scene.lower.supports = vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND)];
+    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
     scene
 }
 
 #[test]
 fn objectives_of_a_uniformly_pressed_block() {
     let area = SIZE[0] * SIZE[1];
-    let whole = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
-    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0) };
+    let whole = Region::WHOLE;
+    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0), volume: None };
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(pressed(), kind).unwrap().with_displacements();
         let (problem, start) = (shape.problem(), shape.start());
         let state = shape.solve(&start, None, Accuracy::TIGHTEST).unwrap();
         let pressure = |measure| {
-            let cost = PressureCost::new(measure, &problem.boundary).unwrap();
+            let cost = PressureCost::new(measure, problem).unwrap();
             (cost.value(&shape.outputs(&state)), cost)
         };
         let wanted =

@@ -1,9 +1,9 @@
 //! Contact patch test: a block pressed flat onto a plane has the pressure of its load at every node, when each node
 //! stands for its tributary area: whole inside, half on edges, a quarter in corners.
 
-use super::setting::{THIRD, block, load, pressures, solve, support};
+use super::setting::{THIRD, block, load, pressures, solve, support, torn};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody};
 
@@ -12,19 +12,19 @@ const PRESSURE: f64 = 250.0;
 /// A block of unequal edges on bricks of unequal edges.
 fn one_body() -> Scene {
     let material = Material::new(1.1e5, 0.33).unwrap();
-    let mut scene = block([60.0, 20.0], 30.0, [6, 4, 4], material, CounterSurface::Plane { height: 30.0 });
-    scene.subdomains = [3, 2, 2];
-    scene.lower.loads = vec![load(Face::Bottom, [0.0, 0.0, PRESSURE])];
+    let scene = block([60.0, 20.0], 30.0, [6, 4, 4], material, CounterSurface::Plane { height: 30.0 });
+    let mut scene = torn(scene, [3, 2, 2]);
+    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
     scene
 }
 
 fn two_bodies() -> Scene {
     let mut scene = one_body();
     scene.lower.loads.clear();
-    scene.lower.supports = vec![support(Face::Bottom, THIRD)];
+    scene.lower.supports = vec![support(BlockFace::Bottom, THIRD)];
     let material = Material::new(7.0e4, 0.2).unwrap();
-    let loads = vec![load(Face::Top, [0.0, 0.0, -PRESSURE])];
-    scene.upper = Some(UpperBody { body: BodyScene { material, supports: vec![], loads }, top: 45.0 });
+    let loads = vec![load(BlockFace::Top, [0.0, 0.0, -PRESSURE])];
+    scene.upper = Some(UpperBody { body: BodyScene::new(material, vec![], loads), top: 45.0 });
     scene
 }
 

@@ -6,7 +6,7 @@
 
 use super::setting::{FIRST, SECOND, THIRD, block, pressures, solve, support};
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::scene::{CounterSurface, Scene};
 use std::f64::consts::PI;
@@ -20,10 +20,10 @@ fn punched(bricks: usize) -> Scene {
     let punch = CounterSurface::Punch { height: SIDE - 0.01, half_width: HALF_WIDTH, relief: 1.0 };
     let mut scene = block([SIDE, THICKNESS], SIDE, [bricks, 1, bricks], material, punch);
     scene.lower.supports = vec![
-        support(Face::X1Min, FIRST),
-        support(Face::X2Min, SECOND),
-        support(Face::X2Max, SECOND),
-        support(Face::Bottom, THIRD),
+        support(BlockFace::X1Min, FIRST),
+        support(BlockFace::X2Min, SECOND),
+        support(BlockFace::X2Max, SECOND),
+        support(BlockFace::Bottom, THIRD),
     ];
     scene
 }

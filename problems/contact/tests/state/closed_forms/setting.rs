@@ -1,10 +1,10 @@
 //! A block under a rigid obstacle, or under a second block, as a starting point for all cases.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
-use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support};
-use contact::shape::{ShapeBounds, SplineKind};
+use contact::scene::{Blocks, BodyScene, ContactScene, CounterSurface, Geometry, Load, Scene, Support};
+use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 use nonsmooth::{Accuracy, StateSolver};
 
 pub const FIRST: [bool; 3] = [true, false, false];
@@ -12,29 +12,34 @@ pub const SECOND: [bool; 3] = [false, true, false];
 pub const THIRD: [bool; 3] = [false, false, true];
 pub const ALL: [bool; 3] = [true; 3];
 
-pub fn support(face: Face, components: [bool; 3]) -> Support {
-    Support { face, components }
+pub fn support(face: BlockFace, components: [bool; 3]) -> Support {
+    Support::new(face, components)
 }
 
-pub fn load(face: Face, traction: [f64; 3]) -> Load {
-    Load { face, traction }
+pub fn load(face: BlockFace, traction: [f64; 3]) -> Load {
+    Load::traction(face, traction)
 }
 
-pub fn block(size: [f64; 2], height: f64, mesh: [usize; 3], material: Material, obstacle: CounterSurface) -> Scene {
+pub fn block(size: [f64; 2], height: f64, bricks: [usize; 3], material: Material, obstacle: CounterSurface) -> Scene {
     Scene {
         name: "closed form".into(),
-        size,
-        mesh,
-        subdomains: [1; 3],
-        lower: BodyScene { material, supports: vec![], loads: vec![] },
+        geometry: Geometry::Blocks(Blocks { size, bricks, subdomains: [1; 3] }),
+        lower: BodyScene::new(material, vec![], vec![]),
         upper: None,
         counter_surface: obstacle,
-        friction: 0.0,
-        surface: SplineKind::BSpline(1),
-        control_points: [2, 2],
-        bounds: ShapeBounds { minimum_height: 0.0, slope: 1e3, volume: [0.0, 1e30] },
-        start_height: height,
+        contact: ContactScene::along_x3(BlockFace::Top, 0.0),
+        shape: ShapeScene::Heights(HeightShape {
+            spline: SplineKind::BSpline(1),
+            control_points: [2, 2],
+            bounds: ShapeBounds { minimum_height: 0.0, slope: 1e3, volume: [0.0, 1e30] },
+            start_height: height,
+        }),
     }
+}
+
+/// The scene in other subdomains.
+pub fn torn(scene: Scene, subdomains: [usize; 3]) -> Scene {
+    scene.with_blocks(|blocks| blocks.subdomains = subdomains)
 }
 
 pub fn solve(scene: &Scene, kind: SolverKind) -> (ContactShape, ContactState) {
@@ -43,11 +48,15 @@ pub fn solve(scene: &Scene, kind: SolverKind) -> (ContactShape, ContactState) {
     (shape, state)
 }
 
+/// Positions of all contact nodes at the start.
+pub fn places(shape: &ContactShape) -> Vec<[f64; 3]> {
+    let problem = shape.problem();
+    let positions = problem.start_positions();
+    problem.boundary.points.iter().map(|point| positions[0][point.node as usize]).collect()
+}
+
 /// (x₁, x₂, area, λ_N) of all contact nodes.
 pub fn pressures(shape: &ContactShape, state: &ContactState) -> Vec<([f64; 2], f64, f64)> {
-    let problem = shape.problem();
-    let points = problem.boundary.points.iter().zip(&state.forces.normal);
-    points
-        .map(|(point, force)| (problem.grid.position(point.position[0], point.position[1]), point.area, *force))
-        .collect()
+    let nodes = places(shape).into_iter().zip(state.rows.areas()).zip(&state.forces.normal);
+    nodes.map(|(([x1, x2, _], area), force)| ([x1, x2], area, *force)).collect()
 }
