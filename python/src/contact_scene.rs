@@ -1,25 +1,26 @@
 //! Contact scenes as objectives: Θ, its subgradient, pressures and statuses at a shape, and the optimal shape.
 
+use crate::contact_mesh::MeshArrays;
+use crate::contact_state::{StateArrays, grid_of};
 use crate::convert;
 use crate::failure::Failure;
 use crate::outcome::RunOutcome;
 use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
-use contact::contact_objective::{ContactObjective, mean_height_coordinates};
+use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
-use contact::equilibrium::ContactStatus;
 use contact::error::SceneError;
 use contact::plausibility::Warning;
 use contact::solvers::{Processes, Wanted};
 use contact::standstill::standstill;
 use nonsmooth::interruption::watched;
-use nonsmooth::{Accuracy, Matrix, OracleError, Report, StateSolver, VariableScaling, Vector};
-use numpy::{PyArray2, PyArrayMethods};
+use nonsmooth::{Accuracy, OracleError, Report, StateSolver, VariableScaling, Vector};
+use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scene_file::{AccuracyName, Case, MeasureName, MethodName, SceneFile, read_text};
+use scene_file::{AccuracyName, Case, FILES, MeasureName, MethodName, SceneFile, read_text};
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -77,9 +78,10 @@ fn merge(table: &mut toml::Table, fields: toml::Table) {
 
 #[pymethods]
 impl ContactScene {
-    /// The scene of a file, or of none, with fields changed: a JSON object of the form of the file.
+    /// The scene of a file, or of none, with fields changed: a JSON object of the form of the file. A mesh, if there is
+    /// one, takes the place of the file that the scene names.
     #[new]
-    fn new(path: Option<&str>, fields: &str) -> PyResult<Self> {
+    fn new(path: Option<&str>, fields: &str, mesh: Option<MeshArrays<'_>>) -> PyResult<Self> {
         let name = path.unwrap_or("scene");
         let bad = |error: &dyn std::fmt::Display| PyValueError::new_err(format!("{name}: {error}"));
         let mut table = match path {
@@ -93,10 +95,19 @@ impl ContactScene {
             table.remove("objective");
         }
         merge(&mut table, fields);
+        let mesh = mesh.map(|mesh| mesh.mesh()).transpose()?;
+        if mesh.is_some() {
+            let [.., name] = FILES;
+            merge(&mut table, toml::toml! { body = { mesh = name } });
+        }
         let text = toml::to_string(&table).map_err(|error| bad(&error))?;
         let file = SceneFile::parse(&text, name).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let folder = path.and_then(|path| Path::new(path).parent()).unwrap_or(Path::new(""));
-        let case = Case::new(&file, folder).map_err(input)?;
+        let case = match &mesh {
+            None => Case::new(&file, folder),
+            Some(mesh) => Case::with_mesh(&file, folder, mesh),
+        };
+        let case = case.map_err(input)?;
         Ok(Self { file, case, objective: OnceLock::new() })
     }
 
@@ -111,82 +122,69 @@ impl ContactScene {
         self.case.scene.name.clone()
     }
 
-    /// Numbers of control points along x₁ and x₂.
+    /// Whether the controls are heights of a surface; else they are displacements of the control points of a lattice.
     #[getter]
-    fn control_points(&self) -> [usize; 2] {
-        self.case.scene.control_points
+    fn has_heights(&self) -> bool {
+        self.case.scene.heights().is_some()
     }
 
-    /// Control heights at the start, mm.
+    /// Shape of arrays of the controls: control points along x₁ and x₂, or the number of controls.
     #[getter]
-    fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let [rows, columns] = self.case.scene.control_points;
-        let start = self.start_heights();
-        convert::array2(py, rows, columns, |i, j| start[i * columns + j])
+    fn control_shape(&self) -> Vec<usize> {
+        let scene = &self.case.scene;
+        scene.heights().map_or_else(|| vec![scene.control_count()], |heights| heights.control_points.to_vec())
     }
 
-    /// Θ, its subgradient, and the state at control heights in row-major order; with its warnings if asked for.
+    /// Controls at the start, mm.
+    #[getter]
+    fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let start = self.case.start.clone().unwrap_or_else(|| self.case.scene.shape.start());
+        convert::shaped(py, start, &self.control_shape())
+    }
+
+    /// Θ, its subgradient, and the state at controls in row-major order; with its fields and warnings if asked for.
     fn evaluate<'py>(
         &self,
         py: Python<'py>,
-        heights: &Bound<'py, PyAny>,
+        controls: &Bound<'py, PyAny>,
         checks: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let heights = convert::vector(heights, "heights", Some(self.case.scene.control_points.iter().product()))?;
+        let controls = convert::vector(controls, "controls", Some(self.case.scene.control_count()))?;
         let objective = self.objective(py)?;
-        objective.solver().problem().admissible.check_shape(&heights).map_err(shape)?;
+        let solver = objective.solver();
+        solver.problem().admissible.check_shape(&controls).map_err(shape)?;
         let solve = || {
-            let state = objective.solver().solve(&heights, None, Accuracy::TIGHTEST)?;
-            let evaluation = objective.differentiate(&heights, &state)?;
-            let warnings = if checks { objective.solver().warnings(&state)? } else { vec![] };
-            Ok((state, evaluation, warnings))
+            let state = solver.solve(&controls, None, Accuracy::TIGHTEST)?;
+            let evaluation = objective.differentiate(&controls, &state)?;
+            let checked = if checks { Some((solver.warnings(&state)?, solver.fields(&state)?)) } else { None };
+            Ok((state, evaluation, checked))
         };
         let failure = Failure::default();
         let watch = failure.clone();
         let solved = py.detach(|| watched(move || signal(&watch), solve));
-        let (state, evaluation, warnings) = match (solved, failure.take()) {
+        let (state, evaluation, checked) = match (solved, failure.take()) {
             (_, Some(error)) => return Err(error),
             (solved, None) => solved.map_err(computation)?,
         };
-        let problem = objective.solver().problem();
-        let (scene, points) = (&problem.scene, &problem.boundary.points);
-        let forces = &state.forces;
-        let shape = [scene.mesh[0] + 1, scene.mesh[1] + 1];
-        let field = |entry: &dyn Fn(usize) -> f64| -> PyResult<Bound<'py, PyArray2<f64>>> {
-            let mut grid = Matrix::from_element(shape[0], shape[1], f64::NAN);
-            for (index, point) in points.iter().enumerate() {
-                grid[(point.position[0], point.position[1])] = entry(index);
-            }
-            convert::array2(py, shape[0], shape[1], |i, j| grid[(i, j)])
-        };
         let result = PyDict::new(py);
-        let [rows, columns] = scene.control_points;
         result.set_item("value", evaluation.value)?;
+        let gradient = convert::shaped(py, evaluation.subgradient.as_slice().to_vec(), &self.control_shape())?;
+        result.set_item("gradient", gradient)?;
+        let Some((warnings, fields)) = checked else { return Ok(result) };
         result.set_item("root", objective.root())?;
         result.set_item("unit", objective.unit())?;
         result.set_item("norm_in_mpa", objective.norm_in_mpa(evaluation.value))?;
         result.set_item("warnings", in_words(&warnings))?;
         result.set_item("error_bound", evaluation.error_bound)?;
-        let gradient = convert::array(py, &evaluation.subgradient).reshape([rows, columns])?;
-        result.set_item("gradient", gradient)?;
-        let pressures = objective.pressures(&state);
-        result.set_item("pressures", field(&|index| pressures[index])?)?;
-        result.set_item("gaps", field(&|index| -forces.opening[index])?)?;
-        result.set_item(
-            "status",
-            field(&|index| match forces.status[index] {
-                ContactStatus::Open => 0.0,
-                ContactStatus::Stick => 1.0,
-                ContactStatus::Slip => 2.0,
-            })?,
-        )?;
-        result.set_item("total_force", forces.total_normal_force())?;
-        result.set_item("residual", forces.residuals.largest())?;
-        result.set_item("weakly_active", crate::convert::json(&forces.kink)?)?;
+        result.set_item("total_force", state.forces.total_normal_force())?;
+        result.set_item("residual", state.forces.residuals.largest())?;
+        result.set_item("weakly_active", convert::json(&state.forces.kink)?)?;
+        let grid = grid_of(solver.problem());
+        StateArrays { fields: &fields, forces: &state.forces, grid }.set(&result)?;
         Ok(result)
     }
 
-    /// The admissible control heights: bounds, rows, sides of the rows.
+    /// The admissible controls: bounds, rows, sides of the rows.
     fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let set = self.objective(py)?.solver().problem().admissible.polyhedron();
         let result = PyDict::new(py);
@@ -233,7 +231,7 @@ impl ContactScene {
         let step = config.first_step.unwrap_or_else(|| objective.first_step(&start));
         config.first_step = Some(step);
         if setup.scaling.is_none() {
-            config.scaling = VariableScaling::Linear(mean_height_coordinates(&start, step));
+            config.scaling = VariableScaling::Linear(objective.coordinates(&start, step));
         }
         problem.admissible.check(&start).map_err(input)?;
         let input = RunInput {
@@ -291,11 +289,6 @@ fn in_words(warnings: &[Warning]) -> Vec<String> {
 }
 
 impl ContactScene {
-    fn start_heights(&self) -> Vec<f64> {
-        let count = self.case.scene.control_points.iter().product();
-        self.case.start.clone().unwrap_or_else(|| vec![self.case.scene.start_height; count])
-    }
-
     fn objective_for(&self, wanted: Wanted) -> Result<ContactObjective, SceneError> {
         let case = &self.case;
         let shape = ContactShape::by(Processes::alone().solver(case.plan(wanted))?);

@@ -1,7 +1,9 @@
 //! From Python objects to numbers, vectors and matrices, and back: arrays and JSON.
 
 use nonsmooth::{Matrix, Vector};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods, ToPyArray};
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods, ToPyArray,
+};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -22,6 +24,15 @@ pub fn array2<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let flat: Vec<f64> = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(|(i, j)| at(i, j)).collect();
     flat.to_pyarray(py).reshape([rows, columns])
+}
+
+/// A new numpy array of the entries in row-major order.
+pub fn shaped<'py, T: Element>(
+    py: Python<'py>,
+    entries: Vec<T>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    PyArray1::from_vec(py, entries).reshape(shape)
 }
 
 /// A vector of `expected` entries from anything that numpy makes a one-dimensional array of real numbers of. Where one

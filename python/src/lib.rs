@@ -9,7 +9,11 @@ mod certificate;
 #[cfg(feature = "collection")]
 mod collection;
 #[cfg(feature = "contact")]
+mod contact_mesh;
+#[cfg(feature = "contact")]
 mod contact_scene;
+#[cfg(feature = "contact")]
+mod contact_state;
 mod convert;
 mod errors;
 mod failure;

@@ -17,6 +17,7 @@ use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, 
 use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 use contact::solvers::{SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
+use exchange::gmsh::GmshMesh;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -56,10 +57,25 @@ impl Case {
     /// # Errors
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn new(file: &SceneFile, folder: &Path) -> Result<Self, SceneError> {
-        let Parts { scene, start, notes } = match &file.body {
-            Some(body) => mesh_scene(file, body, folder)?,
+        let parts = match &file.body {
+            Some(body) => mesh_scene(file, body, folder, || mesh_file::read(&folder.join(&body.mesh), body.unit))?,
             None => block_scene(file, folder)?,
         };
+        Self::of_parts(file, folder, parts)
+    }
+
+    /// As [`new`](Self::new), with a mesh in place of the file that `body.mesh` names.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); cells are named by their tags.
+    pub fn with_mesh(file: &SceneFile, folder: &Path, mesh: &GmshMesh) -> Result<Self, SceneError> {
+        let body = required("body", file.body.as_ref(), "a table, for the body of the mesh")?;
+        let mesh = || mesh_file::convert(mesh, body.unit, &body.mesh);
+        Self::of_parts(file, folder, mesh_scene(file, body, folder, mesh)?)
+    }
+
+    fn of_parts(file: &SceneFile, folder: &Path, parts: Parts) -> Result<Self, SceneError> {
+        let Parts { scene, start, notes } = parts;
         scene.validate()?;
         check_continuation(&file.optimizer, file.body.is_some())?;
         let objective = Objective::new(&file.objective, file.size, folder)?;
@@ -151,7 +167,12 @@ fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, SceneError> {
 }
 
 /// The scene of a mesh.
-fn mesh_scene(file: &SceneFile, body: &MeshBodySection, folder: &Path) -> Result<Parts, SceneError> {
+fn mesh_scene(
+    file: &SceneFile,
+    body: &MeshBodySection,
+    folder: &Path,
+    mesh: impl FnOnce() -> Result<MeshFile, SceneError>,
+) -> Result<Parts, SceneError> {
     for (field, given) in [
         ("size", file.size.is_some()),
         ("lower", file.lower.is_some()),
@@ -167,7 +188,7 @@ fn mesh_scene(file: &SceneFile, body: &MeshBodySection, folder: &Path) -> Result
             ));
         }
     }
-    let MeshFile { mesh, mut notes } = mesh_file::read(&folder.join(&body.mesh), body.unit)?;
+    let MeshFile { mesh, mut notes } = mesh()?;
     let face = required("contact.face", file.contact.face.as_ref(), "the physical surface of the mesh that may touch")?;
     let lattice = required("lattice", file.lattice.as_ref(), "a table, for the shapes of a mesh")?;
     let lower = body.scene()?;

@@ -42,7 +42,11 @@ pub(crate) fn read(file: &Path, unit: UnitName) -> Result<MeshFile, SceneError> 
     convert(&gmsh, unit, &name).map_err(|source| SceneError::InFile { file: path, source: Box::new(source) })
 }
 
-fn convert(gmsh: &GmshMesh, unit: UnitName, name: &str) -> Result<MeshFile, SceneError> {
+/// The body of a mesh of Gmsh.
+///
+/// # Errors
+/// As [`read`], without the name of the file.
+pub(crate) fn convert(gmsh: &GmshMesh, unit: UnitName, name: &str) -> Result<MeshFile, SceneError> {
     let factor = unit.millimetres();
     let mut nodes: Vec<[f64; 3]> = gmsh.nodes.iter().map(|x| x.map(|x| factor * x)).collect();
     let (mut middles, mut cells) = (HashMap::new(), Vec::with_capacity(gmsh.cells.len()));
@@ -122,11 +126,7 @@ fn check_cells(gmsh: &GmshMesh, mesh: &Mesh, notes: &mut Vec<String>, name: &str
         poor += usize::from(quality < POOR);
     }
     if let Some(&first) = inverted.first() {
-        let value = format!(
-            "an inverted or flat cell (element {} of the file, {} in all)",
-            gmsh.cells[first].tag,
-            inverted.len()
-        );
+        let value = format!("an inverted or flat cell (element {}, {} in all)", gmsh.cells[first].tag, inverted.len());
         return Err(SceneError::out_of_range("cells", value, "cells of positive volume at every integration point"));
     }
     if poor > 0 {

@@ -1,10 +1,12 @@
 //! Linear elasticity on one block whose displacements are given on all of its boundary.
 
-use contact::body::elasticity::Material;
-use contact::body::elasticity::brick::{self, GaussPoint, Nodes};
-use contact::body::local_pattern::LocalPattern;
-use contact::body::mesh::Block;
+use contact::body::Body;
+use contact::body::elasticity::{GaussPoint, Material, hex8};
+use contact::body::mesh::Mesh;
+use contact::error::SceneError;
+use contact::scene::BodyScene;
 use problems::commands::Failure;
+use std::sync::Arc;
 
 /// Gauss points and weights on [−1, 1], exact to degree three.
 pub const TWO_POINTS: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
@@ -15,19 +17,30 @@ pub const THREE_POINTS: [(f64, f64); 3] =
 /// Shape functions, their gradients and the weight at one point of a brick.
 pub struct Sample {
     pub values: [f64; 8],
-    pub point: GaussPoint<f64>,
+    pub point: GaussPoint<f64, 8>,
     pub x: [f64; 3],
 }
 
-/// The samples of a brick for a rule along each axis.
-pub fn samples(nodes: &Nodes<f64>, rule: &[(f64, f64)]) -> Vec<Sample> {
+/// Shape functions at ξ ∈ [−1, 1]³, with their gradients there.
+fn shape_functions(xi: [f64; 3]) -> ([f64; 8], [[f64; 3]; 8]) {
+    let factors = |s: [f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| 1.0 + s[axis] * xi[axis]) };
+    let values = hex8::CORNERS.map(|s| factors(s).iter().product::<f64>() / 8.0);
+    let gradients = hex8::CORNERS.map(|s| {
+        let f = factors(s);
+        [s[0] * f[1] * f[2] / 8.0, s[1] * f[0] * f[2] / 8.0, s[2] * f[0] * f[1] / 8.0]
+    });
+    (values, gradients)
+}
+
+/// The samples of a brick of a mesh for a rule along each axis.
+pub fn samples(mesh: &Mesh, brick: usize, rule: &[(f64, f64)]) -> Vec<Sample> {
+    let nodes: [[f64; 3]; 8] = std::array::from_fn(|v| mesh.nodes()[mesh.cell(brick).nodes[v] as usize]);
     let mut samples = Vec::with_capacity(rule.len().pow(3));
     for &(first, u) in rule {
         for &(second, v) in rule {
             for &(third, w) in rule {
-                let values = brick::shape_values([first, second, third]);
-                let mut point = brick::sample(nodes, [first, second, third]);
-                point.volume *= u * v * w;
+                let (values, gradients) = shape_functions([first, second, third]);
+                let point = GaussPoint::new(&nodes, &gradients, u * v * w);
                 let x = std::array::from_fn(|axis| nodes.iter().zip(values).map(|(node, n)| n * node[axis]).sum());
                 samples.push(Sample { values, point, x });
             }
@@ -39,46 +52,47 @@ pub fn samples(nodes: &Nodes<f64>, rule: &[(f64, f64)]) -> Vec<Sample> {
 /// A vector per place.
 type Field<'a> = &'a dyn Fn([f64; 3]) -> [f64; 3];
 
+/// A body of bricks of one material without supports and loads.
+pub fn body(mesh: Mesh, material: Material) -> Result<Body, SceneError> {
+    Body::new("block", &BodyScene::new(material, vec![], vec![]), Arc::new(mesh), &[], 1)
+}
+
 /// Number of free dofs and the nodal displacements under a body force, which a rule integrates: the free part of
 /// K u = f − K u_D, and the given displacements u_D on the boundary.
 ///
 /// # Errors
 /// [`Failure::Computation`] when the stiffness matrix cannot be factored.
 pub fn solution(
-    (pattern, block): (&LocalPattern, &Block),
-    material: &Material,
+    body: &Body,
     rule: &[(f64, f64)],
     (force, given): (Field<'_>, Field<'_>),
 ) -> Result<(usize, Vec<f64>), Failure> {
-    let mut values = pattern.assemble(material, |brick| block.brick(brick));
-    let size = pattern.shape.dof_count();
+    let (mesh, whole) = (&*body.mesh, body.whole());
+    let mut values = whole.assemble(body, mesh.nodes(), |material| *material);
+    let size = whole.dof_count();
     let mut right = vec![0.0; size];
-    for brick in pattern.bricks() {
-        let dofs = pattern.brick_dofs(brick);
-        for sample in samples(&block.brick(brick), rule) {
+    for (brick, cell) in mesh.cells().enumerate() {
+        for sample in samples(mesh, brick, rule) {
             for (component, force) in force(sample.x).into_iter().enumerate() {
-                for (a, value) in sample.values.iter().enumerate() {
-                    right[dofs[3 * a + component]] += sample.point.volume * value * force;
+                for (&node, value) in cell.nodes.iter().zip(&sample.values) {
+                    right[3 * node as usize + component] += sample.point.volume * value * force;
                 }
             }
         }
     }
-    let cells = block.grid.cells;
     let (mut prescribed, mut held) = (vec![0.0; size], vec![false; size]);
-    for node in 0..pattern.shape.node_count() {
-        let position = pattern.shape.local_position(node);
-        if position.iter().zip(cells).any(|(&index, cells)| index == 0 || index == cells) {
-            for (component, value) in given(block.coordinates(position)).into_iter().enumerate() {
-                (prescribed[3 * node + component], held[3 * node + component]) = (value, true);
-            }
+    for node in mesh.skin().into_iter().flat_map(|face| mesh.face_nodes(face)) {
+        for (component, value) in given(mesh.nodes()[node as usize]).into_iter().enumerate() {
+            let dof = 3 * node as usize + component;
+            (prescribed[dof], held[dof]) = (value, true);
         }
     }
+    let lower = &whole.pattern.lower;
     let mut image = vec![0.0; size];
-    pattern.pattern.multiply(&values, &prescribed, &mut image);
+    lower.multiply(&values, &prescribed, &mut image);
     for dof in 0..size {
         right[dof] = if held[dof] { 0.0 } else { right[dof] - image[dof] };
     }
-    let lower = &pattern.pattern;
     for column in 0..size {
         for position in lower.starts()[column] + 1..lower.starts()[column + 1] {
             if held[column] || held[lower.rows()[position]] {
@@ -86,7 +100,7 @@ pub fn solution(
             }
         }
     }
-    let solved = pattern.symbolic(&[]).and_then(|symbolic| symbolic.solve_refined(&values, &mut right));
+    let solved = whole.pattern.symbolic(&[]).and_then(|symbolic| symbolic.solve_refined(&values, &mut right));
     solved.map_err(Failure::computation)?;
     let free = held.iter().filter(|held| !**held).count();
     Ok((free, right.iter().zip(&prescribed).map(|(free, prescribed)| free + prescribed).collect()))

@@ -1,5 +1,6 @@
 """Contact scenes: 3D contact with Coulomb friction as an objective. Units: N, mm, MPa."""
 
+import hashlib
 import json
 import math
 import os
@@ -25,19 +26,38 @@ OPEN, STICK, SLIP = 0, 1, 2
 class Evaluation:
     """Objective and contact state at a shape.
 
+    Arrays over the contact nodes of a block have its columns of nodes along x1 and x2 as their first two axes, with NaN or −1 where
+    supports hold a node; those of a mesh have one axis. Arrays over nodes and cells are those of the body whose shape is optimized.
+
     Attributes
     ----------
     theta : float
         The objective of the scene, in `unit`.
-    gradient : ndarray, shape of the control points
-        One Clarke subgradient with respect to the heights, unit of theta per mm. Where `weakly_active` counts no node,
+    gradient : ndarray, shape of the controls
+        One Clarke subgradient with respect to the controls, unit of theta per mm. Where `weakly_active` counts no node,
         it is the gradient.
+    contact_nodes : ndarray of int64, one entry per contact node
+        Numbers of the contact nodes, places in `positions`.
     pressures : ndarray, one entry per contact node
-        Contact pressures, MPa; first index along x1, second along x2.
+        Contact pressures, MPa.
     gaps : ndarray, one entry per contact node
         Distance to the counter surface, mm; 0 in contact.
     status : ndarray of int8, one entry per contact node
         `OPEN`, `STICK` or `SLIP`. Without friction, nodes in contact that are free to slide slip.
+    areas : ndarray, one entry per contact node
+        Areas that pressures and tractions act on, mm².
+    normals : ndarray, three components per contact node
+        Unit normals from the body into what it touches.
+    tractions : ndarray, three components per contact node
+        What the body exerts on what it touches, MPa: pressure along the normal, and friction. Times `areas`, they are forces.
+    positions : ndarray, (nodes, 3)
+        Positions of the nodes before loading, mm.
+    displacements : ndarray, (nodes, 3)
+        Displacements of the nodes, mm.
+    stresses : ndarray, (cells, 6)
+        Stresses at the centres of the cells, MPa; components 11, 22, 33, 12, 23, 13.
+    von_mises : ndarray, (cells,)
+        Von Mises stresses there, MPa.
     total_force : float
         Sum of the normal forces, N.
     error_bound : float
@@ -60,9 +80,17 @@ class Evaluation:
 
     theta: float
     gradient: np.ndarray
+    contact_nodes: np.ndarray
     pressures: np.ndarray
     gaps: np.ndarray
     status: np.ndarray
+    areas: np.ndarray
+    normals: np.ndarray
+    tractions: np.ndarray
+    positions: np.ndarray
+    displacements: np.ndarray
+    stresses: np.ndarray
+    von_mises: np.ndarray
     total_force: float
     error_bound: float
     residual: float
@@ -100,9 +128,9 @@ class Scene:
     def __init__(self, **fields):
         self._open(None, fields)
 
-    def _open(self, path, fields):
+    def _open(self, path, fields, mesh=None):
         """The engine's scene, and what it is made of, for copies in other processes."""
-        self._made_of = path, json.dumps(_plain(fields, ""))
+        self._made_of = path, json.dumps(_plain(fields, "")), mesh
         self._scene = _ContactScene(*self._made_of)
 
     def __reduce__(self):
@@ -124,10 +152,52 @@ class Scene:
         Scene
             The scene.
         """
-        path = os.path.abspath(os.fsdecode(path))
-        os.stat(path)  # FileNotFoundError
         scene = cls.__new__(cls)
-        scene._open(path, fields)
+        scene._open(_existing(path), fields)
+        return scene
+
+    @classmethod
+    def from_mesh(cls, nodes, cells, faces, path=None, **fields):
+        """The scene of a body given as arrays: hexahedra, or tetrahedra with nodes in the middles of their edges.
+
+        Parameters
+        ----------
+        nodes : array_like, (n, 3)
+            Positions of the nodes, mm, or in ``body["unit"]``. Each belongs to a cell.
+        cells : array_like of int, (m, 8) or (m, 10)
+            Numbers of the nodes of the cells, from 0, in the order of Gmsh; tetrahedra of four nodes (m, 4) get those in the middles of
+            their edges. meshio has another order for tetrahedra of ten nodes: its last two columns change places.
+        faces : dict of str to array_like of int, (k, 4) or (k, 3)
+            Named faces of the body, each as the corners of its facets: what the scene calls a face of supports, loads and contact.
+        path : path, optional
+            A scene file of another mesh, whose place this one takes.
+        **fields
+            Fields of the scene, as for `Scene`; ``body`` is one without ``mesh``.
+
+        Returns
+        -------
+        Scene
+            The scene.
+
+        Examples
+        --------
+        >>> corners = [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
+        >>> scene = Scene.from_mesh(
+        ...     corners, [range(8)], {"foot": [[0, 1, 2, 3]], "head": [[4, 5, 6, 7]], "side": [[0, 3, 7, 4]]},
+        ...     name="one cell", friction=0.2, contact={"face": "head"},
+        ...     body={"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
+        ...           "loads": [{"face": "foot", "force": [0.0, 0.0, 500.0]}],
+        ...           "supports": [{"face": "side", "held": ["u1", "u2"]}]},
+        ...     counter_surface={"form": "plane", "height": 10.5},
+        ...     lattice={"control_points": [2, 2, 2], "displacement": [-1.0, 1.0]})
+        >>> state = scene.evaluate()
+        >>> (state.areas[:, None] * state.tractions).sum(axis=0).round(6).tolist()[2]
+        500.0
+        """
+        named = [(str(name), _numbers_of_nodes(facets, f"faces[{name!r}]")) for name, facets in faces.items()]
+        mesh = _rows(real(nodes, "nodes"), "nodes"), _numbers_of_nodes(cells, "cells"), named
+        scene = cls.__new__(cls)
+        scene._open(None if path is None else _existing(path), fields, mesh)
         return scene
 
     @property
@@ -137,12 +207,12 @@ class Scene:
 
     @property
     def start(self):
-        """Control heights at the start, mm; shape of the control points."""
+        """Controls at the start, mm: heights in the shape of the control points of a block, displacements of those of a lattice."""
         return self._scene.start
 
     @property
     def constraints(self):
-        """Admissible heights, flattened: ``(bounds, constraint)`` as scipy's objects, for `nonsmooth.minimize`."""
+        """Admissible controls, flattened: ``(bounds, constraint)`` as scipy's objects, for `nonsmooth.minimize`."""
         from scipy.optimize import Bounds, LinearConstraint
 
         _check_process()
@@ -151,16 +221,16 @@ class Scene:
         return Bounds(arrays["lower"], arrays["upper"]), rows
 
     def to_toml(self):
-        """The scene as a complete commented file."""
+        """The scene as a complete commented file. A mesh given as arrays is not part of it: the file names ``body.mesh``."""
         return self._scene.toml()
 
-    def evaluate(self, heights=None):
+    def evaluate(self, controls=None):
         """Solve the contact problem of a shape, and check what it means. An interrupt takes effect between its steps.
 
         Parameters
         ----------
-        heights : array_like, optional
-            Control heights, mm, in the shape of the control points or flattened; by default the start.
+        controls : array_like, optional
+            Controls, mm, in the shape of the start or flattened; by default the start.
 
         Returns
         -------
@@ -170,35 +240,21 @@ class Scene:
         Raises
         ------
         OutsideDomain
-            Heights or slopes outside the admissible set, which the commands refuse too, and bodies that are inverted. The volume
+            Controls or slopes outside the admissible set, which the commands refuse too, and bodies that are inverted. The volume
             may be any.
         """
-        found = self._solved(heights, True)
-        return Evaluation(
-            theta=found["value"],
-            gradient=found["gradient"],
-            pressures=found["pressures"],
-            gaps=found["gaps"],
-            status=found["status"].astype(np.int8),
-            total_force=found["total_force"],
-            error_bound=found["error_bound"],
-            residual=found["residual"],
-            weakly_active=json.loads(found["weakly_active"]),
-            unit=found["unit"],
-            root=found["root"],
-            norm_in_mpa=found["norm_in_mpa"],
-            warnings=found["warnings"],
-        )
+        found = self._solved(controls, True)
+        return Evaluation(theta=found.pop("value"), weakly_active=json.loads(found.pop("weakly_active")), **found)
 
-    def fun(self, heights):
+    def fun(self, controls):
         """Theta and one subgradient, flattened: a function for `nonsmooth.minimize`.
 
         A shape without a solution raises `nonsmooth.OutsideDomain`, which shortens the step.
 
         Parameters
         ----------
-        heights : array_like
-            Control heights, mm, flattened or in the shape of the control points.
+        controls : array_like
+            Controls, mm, flattened or in the shape of the start.
 
         Returns
         -------
@@ -206,23 +262,23 @@ class Scene:
             Theta and its subgradient.
         """
         try:
-            found = self._solved(heights, False)
+            found = self._solved(controls, False)
         except RuntimeError as error:
             raise OutsideDomain(str(error)) from error
         return found["value"], found["gradient"].ravel()
 
-    def _solved(self, heights, checks):
+    def _solved(self, controls, checks):
         """The engine's answer at a shape."""
         _check_process()
-        return self._scene.evaluate(self._flat(heights, "heights"), checks)
+        return self._scene.evaluate(self._flat(controls, "heights" if self._scene.has_heights else "controls"), checks)
 
     def optimize(self, start=None, options=None, callback=None, *, journal=None, resume=None):
-        """Minimise theta over the admissible heights, with the Jacobian of all pressures where theta is a function of them.
+        """Minimise theta over the admissible controls, with the Jacobian of all pressures where theta is a function of them.
 
         Parameters
         ----------
         start : array_like, optional
-            Control heights to begin with; by default those of the scene.
+            Controls to begin with; by default those of the scene.
         options, callback, journal, resume : optional
             As for `nonsmooth.minimize`. By default, ``max_evaluations``, ``tolerance`` and the limits are those of the
             scene, first step and scaling those of the command ``contact3d optimize``.
@@ -230,7 +286,7 @@ class Scene:
         Returns
         -------
         Result
-            ``x`` holds the control heights in row-major order, flattened. ``warnings`` holds those of the optimizer and those about
+            ``x`` holds the controls in row-major order, flattened. ``warnings`` holds those of the optimizer and those about
             the final shape, with codes as in `Evaluation`.
         """
         _check_process()
@@ -253,33 +309,67 @@ class Scene:
             "scaling": scaling,
             "callback": told(callback),
             "disp": disp,
-            "journal": journal_of(journal, resume, self.to_toml()),
+            "journal": journal_of(journal, resume, self._identity()),
         }
         return drive(self._scene.optimize, setup)
 
-    def _flat(self, heights, what):
-        """Control heights in row-major order; by default those of the start."""
-        if heights is None:
+    def _identity(self):
+        """What a journal of the scene is recognised by: its file, and the mesh if it was given as arrays."""
+        mesh = self._made_of[2]
+        if mesh is None:
+            return self.to_toml()
+        nodes, cells, faces = mesh
+        digest = hashlib.sha256(nodes.tobytes() + cells.tobytes())
+        for name, facets in faces:
+            digest.update(name.encode() + facets.tobytes())
+        return f"{self.to_toml()}# mesh {digest.hexdigest()}\n"
+
+    def _flat(self, controls, what):
+        """Controls in row-major order; by default those of the start."""
+        if controls is None:
             return self.start.ravel()
-        heights = real(heights, what)
-        shape = tuple(self._scene.control_points)
-        if heights.shape not in (shape, (shape[0] * shape[1],)):
+        controls = real(controls, what)
+        shape = tuple(self._scene.control_shape)
+        count = math.prod(shape)
+        if controls.shape not in (shape, (count,)):
             raise ValueError(
-                f"{what} has {heights.size} entries, expected {shape[0] * shape[1]}"
-                if heights.ndim == 1
-                else f"{what} has shape {heights.shape}, expected {shape} or flattened ({shape[0] * shape[1]},)"
+                f"{what} has {controls.size} entries, expected {count}"
+                if controls.ndim == 1
+                else f"{what} has shape {controls.shape}, expected {shape}" + (f" or flattened ({count},)" if len(shape) > 1 else "")
             )
-        return heights.ravel()
+        return controls.ravel()
 
     def __repr__(self):
         return f"<Scene {self.name!r}>"
 
 
-def _again(path, fields):
+def _again(path, fields, mesh):
     """A scene in another process."""
     scene = Scene.__new__(Scene)
-    scene._open(path, json.loads(fields))
+    scene._open(path, json.loads(fields), mesh)
     return scene
+
+
+def _existing(path):
+    """The absolute path of a file."""
+    path = os.path.abspath(os.fsdecode(path))
+    os.stat(path)  # FileNotFoundError
+    return path
+
+
+def _rows(array, what):
+    """An array with rows, as the engine takes it."""
+    if array.ndim != 2:
+        raise ValueError(f"{what} has shape {array.shape}, expected rows of numbers")
+    return np.ascontiguousarray(array)
+
+
+def _numbers_of_nodes(value, what):
+    """Rows of whole numbers."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{what} has numbers of {array.dtype}, expected whole numbers of nodes")
+    return _rows(array.astype(np.int64), what)
 
 
 def _plain(value, path):

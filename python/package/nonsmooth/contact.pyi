@@ -3,7 +3,7 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
-from numpy import float64, int8
+from numpy import float64, int8, int64
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import Bounds, LinearConstraint
 
@@ -18,9 +18,17 @@ SLIP: int
 class Evaluation:
     theta: float
     gradient: NDArray[float64]
+    contact_nodes: NDArray[int64]
     pressures: NDArray[float64]
     gaps: NDArray[float64]
     status: NDArray[int8]
+    areas: NDArray[float64]
+    normals: NDArray[float64]
+    tractions: NDArray[float64]
+    positions: NDArray[float64]
+    displacements: NDArray[float64]
+    stresses: NDArray[float64]
+    von_mises: NDArray[float64]
     total_force: float
     error_bound: float
     residual: float
@@ -34,6 +42,15 @@ class Scene:
     def __init__(self, **fields: Any) -> None: ...
     @classmethod
     def from_toml(cls, path: str | PathLike[str], **fields: Any) -> Scene: ...
+    @classmethod
+    def from_mesh(
+        cls,
+        nodes: ArrayLike,
+        cells: ArrayLike,
+        faces: Mapping[str, ArrayLike],
+        path: str | PathLike[str] | None = None,
+        **fields: Any,
+    ) -> Scene: ...
     @property
     def name(self) -> str: ...
     @property
@@ -41,8 +58,8 @@ class Scene:
     @property
     def constraints(self) -> tuple[Bounds, LinearConstraint]: ...
     def to_toml(self) -> str: ...
-    def evaluate(self, heights: ArrayLike | None = None) -> Evaluation: ...
-    def fun(self, heights: ArrayLike) -> tuple[float, NDArray[float64]]: ...
+    def evaluate(self, controls: ArrayLike | None = None) -> Evaluation: ...
+    def fun(self, controls: ArrayLike) -> tuple[float, NDArray[float64]]: ...
     def optimize(
         self,
         start: ArrayLike | None = None,

@@ -43,8 +43,9 @@ impl Configuration {
         if rigid.total_load() == 0.0 {
             let size = |node: u32| positions[0][node as usize].iter().fold(0.0, |size: f64, x| size.max(x.abs()));
             let nodes = problem.boundary.points.iter().zip(&rows.nodes);
-            let rounding = nodes.map(|(point, node)| -node.gap <= GAP_ROUNDING * size(point.node).max(node.gap.abs()));
-            if rounding.fold(true, |all, rounding| all && rounding) {
+            let mut rounding =
+                nodes.map(|(point, node)| -node.gap <= GAP_ROUNDING * size(point.node).max(node.gap.abs()));
+            if rounding.all(|is_rounding| is_rounding) {
                 // Bodies that just touch are at rest: rounding would press them together.
                 rows.nodes.iter_mut().for_each(|node| node.gap = node.gap.max(0.0));
             }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// What the controls of a scene move.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "a scene has one of them")]
 pub enum ShapeScene {
     /// Heights of a surface over the base of a block.
     Heights(HeightShape),

@@ -106,7 +106,7 @@ fn row(
     let shape = objective.solver();
     let clock = Instant::now();
     let state = shape.solve(control, None, Accuracy::relative(tolerance)?)?;
-    let dual = objective.state_dual(control, &state);
+    let dual = objective.cost_gradient(control, &state).state;
     let (subgradient, error) = shape.pull_back(control, &state, &dual)?;
     let seconds = clock.elapsed().as_secs_f64();
     let largest = exact.pressures.iter().copied().fold(0.0, f64::max);

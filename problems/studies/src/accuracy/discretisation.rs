@@ -76,18 +76,18 @@ fn measure(scene: SceneName, mesh: usize) -> Result<MeshRow, Failure> {
     let state = shape.solve(&shape.start(), None, Accuracy::relative(ALGEBRA)?)?;
     let seconds = clock.elapsed().as_secs_f64();
     let problem = shape.problem();
+    let bodies = shape.bodies(&state)?;
     let (mut integral, mut peak, mut first, mut second) = (0.0, 0.0_f64, 0.0, 0.0);
-    for (point, &force) in problem.boundary.points.iter().zip(&state.forces.normal) {
-        let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
-        let pressure = force / point.area;
-        integral += point.area * pressure.powf(EXPONENT);
+    let nodes = problem.boundary.points.iter().zip(&state.rows.nodes).zip(&state.forces.normal);
+    for ((point, row), &force) in nodes {
+        let [x1, x2, _] = bodies[0].positions[point.node as usize];
+        let pressure = force / row.area;
+        integral += row.area * pressure.powf(EXPONENT);
         peak = peak.max(pressure);
         first += force * x1;
         second += force * (x1 * x1 + x2 * x2);
     }
-    let bodies = shape.bodies(&state)?;
-    let materials = problem.bodies().map(|body| &body.material);
-    let energy = bodies.iter().zip(materials).map(|(body, material)| body.strain_energy(material)).sum();
+    let energy = bodies.iter().zip(&*problem.bodies).map(|(solved, body)| solved.strain_energy(body)).sum();
     let case = case(mesh);
     let dofs = 3 * bodies.len() * case.subdomains.pow(3) * (case.ratio() + 1).pow(3);
     let values = [integral, peak, first, second, energy];

@@ -8,17 +8,17 @@
 //! where the gradients are not better than elsewhere (at 2 × 2 × 2 they are). The stress recovered for pictures is
 //! compared where it is taken: at the centres of the bricks, and as a mean at the nodes.
 
-use crate::held_block::{THREE_POINTS, samples, solution};
-use contact::body::elasticity::brick::{self, DOFS};
-use contact::body::elasticity::hex8;
+use crate::held_block::{self, THREE_POINTS, samples, solution};
+use contact::body::Body;
+use contact::body::elasticity::stiffness::stress;
 use contact::body::elasticity::stress::{COMPONENTS, von_mises};
 use contact::body::elasticity::{Formulation, Material};
-use contact::body::local_pattern::LocalPattern;
-use contact::body::mesh::{Block, Grid};
+use contact::body::mesh::{Grid, block};
 use contact::equilibrium::SolvedBody;
 use contact::fields::BodyFields;
 use problems::commands::Failure;
 use serde::Serialize;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Errors of one mesh.
@@ -76,19 +76,18 @@ impl Wave {
 pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Failure> {
     let clock = Instant::now();
     let material = Material::new(1.0, 0.3)?;
-    let Smooth { block, pattern, free: dofs, u } = smooth(bricks, &material)?;
+    let Smooth { body, free: dofs, u } = smooth(bricks, material)?;
     let seconds = clock.elapsed().as_secs_f64();
     let lame = (material.lame_lambda(), material.shear_modulus());
     let (mut displacement, mut energy) = ([0.0; 2], [0.0; 2]);
-    for brick in pattern.bricks() {
-        let dofs = pattern.brick_dofs(brick);
-        let local: [f64; DOFS] = dofs.map(|dof| u[dof]);
-        for sample in samples(&block.brick(brick), &THREE_POINTS) {
+    for brick in 0..body.mesh.cell_count() {
+        let local = body.mesh.cell_values(brick, &u);
+        for sample in samples(&body.mesh, brick, &THREE_POINTS) {
             let (exact, slope) = (Wave::displacement(sample.x), Wave::gradient(sample.x));
-            let found = brick::displacement_gradient(&sample.point, &local);
+            let found = sample.point.gradient(&local);
             let difference = std::array::from_fn(|j| std::array::from_fn(|i| found[j][i] - slope[j][i]));
             for (sum, gradient) in energy.iter_mut().zip([difference, slope]) {
-                *sum += sample.point.volume * contraction(&hex8::stress(&gradient, lame), &gradient);
+                *sum += sample.point.volume * contraction(&stress(&gradient, lame), &gradient);
             }
             for (j, exact) in exact.into_iter().enumerate() {
                 let value: f64 = sample.values.iter().enumerate().map(|(a, n)| n * local[3 * a + j]).sum();
@@ -103,25 +102,21 @@ pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Failure>
 
 /// The discrete solution of one mesh.
 struct Smooth {
-    block: Block,
-    pattern: LocalPattern,
+    body: Body,
     /// Dofs that are not prescribed.
     free: usize,
-    u: Vec<f64>,
+    /// Displacement per node.
+    u: Vec<[f64; 3]>,
 }
 
-fn smooth(bricks: usize, material: &Material) -> Result<Smooth, Failure> {
+fn smooth(bricks: usize, material: Material) -> Result<Smooth, Failure> {
     let grid = Grid { cells: [bricks; 3], size: [1.0, 1.0] };
-    let upper = grid.columns().map(|(i, j)| {
-        let [x1, x2] = grid.position(i, j);
-        1.0 + 0.15 * (2.0 * x1).sin() * (3.0 * x2).cos()
-    });
-    let block = Block { grid, lower: vec![0.0; grid.column_count()], upper: upper.collect() };
-    let pattern = LocalPattern::new(grid.cells, &[]);
-    let wave = Wave::new(material);
+    let upper: Vec<f64> = grid.places().map(|[x1, x2]| 1.0 + 0.15 * (2.0 * x1).sin() * (3.0 * x2).cos()).collect();
+    let body = held_block::body(block(&grid, [1; 3], &vec![0.0; grid.column_count()], &upper)?, material)?;
+    let wave = Wave::new(&material);
     let fields: (&dyn Fn(_) -> _, &dyn Fn(_) -> _) = (&|x| wave.body_force(x), &Wave::displacement);
-    let (free, u) = solution((&pattern, &block), material, &THREE_POINTS, fields)?;
-    Ok(Smooth { block, pattern, free, u })
+    let (free, u) = solution(&body, &THREE_POINTS, fields)?;
+    Ok(Smooth { body, free, u: u.as_chunks().0.to_vec() })
 }
 
 /// Errors of the recovered stress of one mesh.
@@ -137,29 +132,33 @@ pub struct StressErrors {
 /// Solves on `bricks`³ bricks of a formulation and compares the fields of the body with the exact stress.
 pub fn manufactured_stress_errors(bricks: usize, formulation: Formulation) -> Result<StressErrors, Failure> {
     let material = Material::new(1.0, 0.3)?.with_formulation(formulation);
-    let Smooth { block, u, .. } = smooth(bricks, &material)?;
-    let grid = block.grid;
-    let displacement = u.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect();
-    let body = SolvedBody { block, displacement, gluing_defect: 0.0, subdomains: vec![0; grid.brick_count()] };
-    let fields = BodyFields::new(body, &material);
+    let Smooth { body, u, .. } = smooth(bricks, material)?;
+    let mesh = Arc::clone(&body.mesh);
+    let solved = SolvedBody {
+        positions: Arc::new(mesh.nodes().to_vec()),
+        displacement: u,
+        gluing_defect: 0.0,
+        subdomains: vec![0; mesh.cell_count()],
+        mesh: Arc::clone(&mesh),
+    };
+    let fields = BodyFields::new(solved, &body);
     let exact = |x: [f64; 3]| {
-        let full = hex8::stress(&Wave::gradient(x), (material.lame_lambda(), material.shear_modulus()));
+        let full = stress(&Wave::gradient(x), (material.lame_lambda(), material.shear_modulus()));
         COMPONENTS.map(|(row, column)| full[row][column])
     };
     let mut centre = [0.0; 2];
-    for (brick, found) in grid.bricks().zip(&fields.stress) {
-        let nodes = fields.block.brick(brick);
-        let middle = std::array::from_fn(|axis| nodes.iter().map(|node| node[axis] / 8.0).sum());
-        for ((found, exact), (row, column)) in found.iter().zip(exact(middle)).zip(COMPONENTS) {
-            let weight = brick::volume(&nodes) * if row == column { 1.0 } else { 2.0 };
+    for (brick, found) in fields.stress.iter().enumerate() {
+        let volume = mesh.cell_nodes(brick, mesh.nodes()).volume();
+        let exact = exact(mesh.centre(brick, mesh.nodes()));
+        for ((found, exact), (row, column)) in found.iter().zip(exact).zip(COMPONENTS) {
+            let weight = volume * if row == column { 1.0 } else { 2.0 };
             centre[0] += weight * (found - exact).powi(2);
             centre[1] += weight * exact.powi(2);
         }
     }
     let mut nodal = [0.0; 2];
-    let [_, n2, n3] = grid.nodes();
-    for (node, found) in fields.nodal_von_mises.iter().enumerate() {
-        let exact = von_mises(&exact(fields.block.coordinates([node / (n2 * n3), node / n3 % n2, node % n3])));
+    for (node, found) in mesh.nodes().iter().zip(&fields.nodal_von_mises) {
+        let exact = von_mises(&exact(*node));
         nodal[0] += (found - exact).powi(2);
         nodal[1] += exact.powi(2);
     }

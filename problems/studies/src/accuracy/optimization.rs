@@ -7,7 +7,6 @@
 use crate::accuracy::extent::{Extent, case};
 use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
-use contact::contact_objective::mean_height_coordinates;
 use contact::cost::{NodeWeight, PressureMeasure};
 use nonsmooth::{AccuracyPolicy, BundleTrust, BundleTrustConfig, VariableScaling, Vector};
 use problems::commands::{ContactObjective, Failure, SolvedShape};
@@ -152,7 +151,7 @@ fn minimize(
         accuracy,
         composite_model: false,
         first_step: Some(first_step),
-        scaling: VariableScaling::Linear(mean_height_coordinates(&start, first_step)),
+        scaling: VariableScaling::Linear(objective.coordinates(&start, first_step)),
         ..BundleTrustConfig::default()
     };
     let set = objective.solver().problem().admissible.polyhedron().clone();

@@ -139,13 +139,11 @@ impl Extent {
 impl SceneName {
     /// The scene on the mesh of a case.
     pub fn scene(self, case: Case) -> Result<Scene, SceneError> {
-        let mut scene = match self {
+        let scene = match self {
             Self::Signorini => scene::signorini()?,
             Self::Hertz => scene::hertz()?,
         };
-        scene.mesh = [case.mesh; 3];
-        scene.subdomains = [case.subdomains; 3];
-        Ok(scene)
+        Ok(scene.with_bricks([case.mesh; 3], [case.subdomains; 3]))
     }
 }
 
@@ -158,7 +156,7 @@ impl Variant {
         self.clustered_solver(problem, 1)
     }
 
-    /// The solver of a problem with clusters of so many subdomains per axis.
+    /// The solver of a problem with clusters of about so many subdomains per axis.
     ///
     /// # Errors
     /// As [`Variant::solver`], and [`ContactError::Clusters`].
@@ -172,7 +170,8 @@ impl Variant {
             Self::Gmres => DualMethod::Newton(Recycling::Off),
             _ => DualMethod::Newton(Recycling::On),
         };
-        let options = TornOptions { preconditioner, clusters: [clusters; 3], ..TornOptions::default() };
+        let clusters = (clusters > 1).then(|| cluster_count(&problem, clusters));
+        let options = TornOptions { preconditioner, clusters, ..TornOptions::default() };
         Ok(AnySolver::from(TotalFeti::new(problem, options)?.with_method(method)))
     }
 
@@ -185,6 +184,11 @@ impl Variant {
             Self::Direct => None,
         }
     }
+}
+
+/// Number of clusters of all bodies, of about `edge`³ subdomains each.
+pub fn cluster_count(problem: &ContactProblem, edge: usize) -> usize {
+    problem.bodies.iter().map(|body| (body.pieces.len() / edge.pow(3)).max(1)).sum()
 }
 
 /// The name of a value of an enumeration on the command line.

@@ -30,7 +30,7 @@ pub struct ScalingArguments {
     /// One solver only.
     #[arg(long, value_enum)]
     pub variant: Option<Variant>,
-    /// Clusters of C³ subdomains, which share six rigid motions; several, with commas, are measured in turn.
+    /// Clusters of about C³ subdomains, which share six rigid motions; several, with commas, are measured in turn.
     #[arg(long, value_name = "C", value_delimiter = ',', default_value = "1")]
     pub clusters: Vec<usize>,
     /// Measure one core and predict time and memory of many ranks (Signorini, 7 bricks per edge of a subdomain); with

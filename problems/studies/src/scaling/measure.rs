@@ -1,10 +1,10 @@
 //! Measures one case with one solver; tolerances are relative residuals.
 
-use crate::scaling::cases::{Case, SceneName, Variant};
+use crate::scaling::cases::{Case, SceneName, Variant, cluster_count};
 use crate::scaling::memory;
 use crate::scaling::rows::{Adjoint, Sample, ScalingRow, Solve, Start};
 use contact::contact_shape::{AnySolver, ContactState, ContactWarmStart};
-use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, SolverState};
+use contact::equilibrium::{ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
 use nonsmooth::verify::seeded_direction;
 use problems::commands::Failure;
@@ -35,8 +35,8 @@ const CHANGE: f64 = 1e-3;
 pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<ScalingRow, Failure> {
     memory::reset_peak();
     let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
-    let [first, second] = problem.scene.control_points;
-    let (controls, change) = (vec![problem.scene.start_height; first * second], seeded_direction(first * second, SEED));
+    let controls = problem.scene.shape.start();
+    let change = seeded_direction(controls.len(), SEED);
     let nearby: Vec<f64> =
         controls.iter().zip(&change).map(|(height, entry)| height + CHANGE * height * entry).collect();
     let clock = Instant::now();
@@ -64,7 +64,7 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
         case,
         variant,
         clusters,
-        coarse_unknowns: variant.preconditioner().map(|_| coarse_unknowns(&problem, clusters)),
+        coarse_unknowns: variant.preconditioner().map(|_| 6 * cluster_count(&problem, clusters)),
         dofs,
         multipliers,
         contact_nodes: problem.boundary.points.len(),
@@ -75,12 +75,6 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
         peak_memory: memory::peak(),
         failures,
     })
-}
-
-/// Rigid amplitudes of all clusters of `clusters` subdomains per axis.
-fn coarse_unknowns(problem: &ContactProblem, clusters: usize) -> usize {
-    let per_body: usize = problem.scene.subdomains.iter().map(|count| count / clusters).product();
-    6 * problem.bodies().count() * per_body
 }
 
 /// A solver's reason as a failed command.
@@ -148,7 +142,7 @@ fn solve(
         tolerance,
         residual: state.forces.residuals.newton,
         work: state.work(),
-        objective: pressures(solver.problem(), &state.forces).map(|(pressure, _)| pressure.powi(EXPONENT)).sum(),
+        objective: pressures(&state).map(|(pressure, _)| pressure.powi(EXPONENT)).sum(),
         seconds: clock.elapsed().as_secs_f64(),
         stages: state.stages,
     };
@@ -158,16 +152,16 @@ fn solve(
 /// Sensitivities of the column heights of Σσ⁴, timed.
 fn adjoint(solver: &AnySolver, state: &ContactState, tolerance: f64) -> Result<Adjoint, ContactError> {
     let boundary = &solver.problem().boundary;
-    let mut dual = vec![0.0; boundary.dual_dimension()];
-    for (entry, (pressure, area)) in dual.iter_mut().zip(pressures(solver.problem(), &state.forces)) {
-        *entry = f64::from(EXPONENT) * pressure.powi(EXPONENT - 1) / area;
+    let mut dual = vec![0.0; boundary.row_count];
+    for (point, (pressure, area)) in boundary.points.iter().zip(pressures(state)) {
+        dual[point.start] = f64::from(EXPONENT) * pressure.powi(EXPONENT - 1) / area;
     }
-    let result = solver.sensitivities(&state.solution, &boundary.pack(&dual), tolerance)?;
+    let result = solver.sensitivities(&state.solution, &dual, tolerance)?;
     let (seconds, shape_seconds) = (result.adjoint_seconds, result.shape_seconds);
     Ok(Adjoint { tolerance, applications: result.applications, seconds, shape_seconds })
 }
 
 /// max(σ, 0) and area per contact node.
-fn pressures(problem: &ContactProblem, forces: &ContactForces) -> impl Iterator<Item = (f64, f64)> {
-    forces.normal.iter().zip(&problem.boundary.points).map(|(force, point)| ((force / point.area).max(0.0), point.area))
+fn pressures(state: &ContactState) -> impl Iterator<Item = (f64, f64)> {
+    state.forces.normal.iter().zip(&state.rows.nodes).map(|(force, node)| ((force / node.area).max(0.0), node.area))
 }

@@ -14,7 +14,7 @@ const CERTIFICATE: f64 = 4e-9;
 /// Largest difference of forces between independent paths, over the largest force. Forces are less accurate than
 /// residuals by the condition of the problem.
 const AGREEMENT: f64 = 1e-6;
-/// Largest difference of shape sensitivities.
+/// Largest difference of the sensitivities of the control heights.
 const SUBGRADIENT_AGREEMENT: f64 = 1e-4;
 
 /// Share of a brick's stiffness that is zero for a sensitivity.
@@ -36,7 +36,7 @@ fn record(case: &ContactCase) -> Record {
         Ok(problem) => problem,
         Err(reason) => return refused_scene(record, case, reason),
     };
-    let start = vec![problem.scene.start_height; problem.scene.control_points.iter().product()];
+    let start = problem.scene.shape.start();
     let controls = case.controls.as_ref().unwrap_or(&start);
     let (torn_path, torn) = by_tfeti(&problem, controls);
     let (direct_path, direct) = by_condensation(&problem, controls);
@@ -189,7 +189,7 @@ fn solved(
     let (first, second) = (first?, second?);
     if torn.forces.kink.weakly_active == 0 && direct.forces.kink.weakly_active == 0 {
         // Where equilibrium alone determines the forces, sensitivities vanish up to rounding of a brick's stiffness.
-        let brick = problem.grid.size[0] / problem.grid.cells[0] as f64;
+        let brick = problem.scene.blocks().map_or(0.0, |blocks| blocks.size[0] / blocks.bricks[0] as f64);
         let floor = NEGLIGIBLE * problem.scene.lower.material.young_modulus() * brick;
         let difference = difference_over(first, second, floor);
         record.subgradient_difference = Some(difference);

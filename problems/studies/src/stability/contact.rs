@@ -95,12 +95,14 @@ impl ContactCase {
 
 /// Control heights of a gently wavy surface below the start height of a scene.
 pub fn wavy_controls(scene: &Scene) -> Vec<f64> {
-    wavy(scene.start_height, scene.control_points.iter().product())
+    let start = scene.shape.start();
+    wavy(start[0], start.len())
 }
 
 /// A state found by one path.
 pub struct Found {
     pub forces: ContactForces,
+    /// Sensitivities of the control heights, for a dual that is nothing special.
     pub heights: Result<Vec<f64>, String>,
     pub diagnosis: Option<Result<Diagnosis, String>>,
 }
@@ -138,11 +140,12 @@ fn attempt<S: ContactSolver>(
     }
 }
 
-/// Sensitivities of the heights for a dual that is nothing special.
+/// Sensitivities of the control heights for a dual that is nothing special.
 fn heights<S: ContactSolver>(solver: &S, state: &ContactState<S::State>) -> Result<Vec<f64>, String> {
-    let dual: Vec<f64> = (0..solver.problem().boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
+    let problem = solver.problem();
+    let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
     let sensitivities = solver.sensitivities(&state.solution, &dual, ADJOINT_TOLERANCE);
-    sensitivities.map(|sensitivities| sensitivities.heights).map_err(|error| error.to_string())
+    sensitivities.map(|found| problem.map.pull_back(&found.positions)).map_err(|error| error.to_string())
 }
 
 /// Solves a state by total FETI and the semismooth Newton method.

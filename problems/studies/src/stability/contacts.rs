@@ -4,7 +4,7 @@
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{HELD, block, footed, pair, stacked, with_loads};
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::equilibrium::{ContactForces, ContactProblem, WEAKLY_ACTIVE};
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Load, Scene, Support};
@@ -26,9 +26,10 @@ pub fn counts(expected: [usize; 3]) -> impl Fn(&ContactProblem, &ContactForces) 
 pub fn uniform(pressure: f64, shear: f64) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
     move |problem, forces| {
         let mut error = 0.0_f64;
-        for (index, point) in problem.boundary.points.iter().enumerate() {
-            error = error.max((forces.normal[index] / point.area / pressure - 1.0).abs());
-            let traction = forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
+        // Areas are those of the base, whatever the shape.
+        for (index, node) in problem.start_rows().nodes.iter().enumerate() {
+            error = error.max((forces.normal[index] / node.area / pressure - 1.0).abs());
+            let traction = forces.tangential.get(index).map_or([0.0; 3], |force| force.map(|f| f / node.area));
             error = error.max((traction[0] + shear).abs() / pressure).max(traction[1].abs() / pressure);
         }
         let text = format!("exact state within {error:.1e}");
@@ -47,9 +48,9 @@ pub fn cases() -> Vec<Case> {
 fn ball(radius: f64, pressure: f64) -> Result<Scene, SceneError> {
     let mut scene = pair()?;
     scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius, centre: [0.0; 2] };
-    scene.friction = 0.3;
+    scene.contact.friction = 0.3;
     if let Some(upper) = &mut scene.upper {
-        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -pressure] }];
+        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -pressure])];
     }
     Ok(scene)
 }
@@ -57,13 +58,13 @@ fn ball(radius: f64, pressure: f64) -> Result<Scene, SceneError> {
 /// The lower block is drawn along x₁ below a plate that presses on it: every node slides.
 fn dragged(friction: f64) -> Result<Scene, SceneError> {
     let mut scene = stacked(friction, 1.0, 0.0)?;
-    scene.lower.supports = vec![Support { face: Face::Bottom, components: HELD }];
+    scene.lower.supports = vec![Support::new(BlockFace::Bottom, HELD)];
     if let Some(upper) = &mut scene.upper {
-        upper.body.supports = vec![Support { face: Face::X1Max, components: [true, true, false] }];
-        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+        upper.body.supports = vec![Support::new(BlockFace::X1Max, [true, true, false])];
+        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
     }
-    let faces = [Face::X1Min, Face::X2Min, Face::X2Max];
-    scene.lower.loads = faces.map(|face| Load { face, traction: [0.02, 0.0, 0.0] }).to_vec();
+    let faces = [BlockFace::X1Min, BlockFace::X2Min, BlockFace::X2Max];
+    scene.lower.loads = faces.map(|face| Load::traction(face, [0.02, 0.0, 0.0])).to_vec();
     Ok(scene)
 }
 

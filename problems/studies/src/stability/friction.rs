@@ -3,8 +3,8 @@
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{block, footed, pair};
-use contact::body::mesh::Face;
-use contact::scene::{Load, Scene};
+use contact::body::mesh::BlockFace;
+use contact::scene::Load;
 
 const GROUP: &str = "friction";
 
@@ -12,7 +12,7 @@ pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for friction in [0.0, 1e-12, 0.3, 0.9, 1.5, 5.0] {
         for (name, scene) in [("block", block()), ("two bodies", pair())] {
-            let scene = scene.map(|scene| Scene { friction, ..scene });
+            let scene = scene.map(|scene| scene.with_friction(friction));
             let case = ContactCase::new(scene).wavy().with_paper();
             cases.push(case.case(GROUP, format!("𝓕 = {friction:?}, {name}")));
         }
@@ -20,10 +20,10 @@ pub fn cases() -> Vec<Case> {
     for friction in [0.3, 0.9, 1.5, 2.0, 3.0, 5.0] {
         let scene = footed(0.0).map(|mut scene| {
             scene.lower.loads = vec![
-                Load { face: Face::X1Max, traction: [40.0, 7.0, 20.0] },
-                Load { face: Face::X1Min, traction: [40.0, 0.0, 20.0] },
+                Load::traction(BlockFace::X1Max, [40.0, 7.0, 20.0]),
+                Load::traction(BlockFace::X1Min, [40.0, 0.0, 20.0]),
             ];
-            Scene { friction, ..scene }
+            scene.with_friction(friction)
         });
         cases.push(ContactCase::new(scene).with_paper().case(GROUP, format!("𝓕 = {friction:?}, held base, pushed")));
     }

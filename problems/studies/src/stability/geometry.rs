@@ -13,8 +13,8 @@ const FACTORS: &str =
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for height in [1e-2, 0.1, 1.0, 100.0, 1e3, 1e4] {
-        let scene = stacked(0.3, 1.0, 0.05).map(|mut scene| {
-            scene.start_height = height;
+        let scene = stacked(0.3, 1.0, 0.05).map(|scene| {
+            let mut scene = scene.with_heights(|heights| heights.start_height = height);
             scene.counter_surface = CounterSurface::Plane { height };
             if let Some(upper) = &mut scene.upper {
                 upper.top = 2.0 * height;
@@ -29,7 +29,7 @@ pub fn cases() -> Vec<Case> {
         cases.push(if (1.0..=1e3).contains(&height) { case } else { case.slow() });
     }
     for (label, size) in [("1000 : 1 plan", [10.0, 1e4]), ("1 : 1000 plan", [10.0, 1e-2])] {
-        let scene = stacked(0.3, 1.0, 0.05).map(|scene| contact::scene::Scene { size, ..scene });
+        let scene = stacked(0.3, 1.0, 0.05).map(|scene| scene.with_blocks(|blocks| blocks.size = size));
         let case = ContactCase::new(scene).check(uniform(1.0, 0.05));
         let case = case.limit([&["BeyondPrecision"], &[]], FACTORS);
         cases.push(case.case(GROUP, label).slow());

@@ -3,7 +3,7 @@
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{block, footed, pair, stacked, with_loads};
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Load, Scene, Support};
 
@@ -42,8 +42,8 @@ fn sizes() -> Vec<Case> {
 fn unsupported(friction: f64, traction: [f64; 3]) -> Result<Scene, SceneError> {
     let mut scene = block()?;
     scene.lower.supports.clear();
-    scene.lower.loads = vec![Load { face: Face::Bottom, traction }];
-    Ok(Scene { friction, ..scene })
+    scene.lower.loads = vec![Load::traction(BlockFace::Bottom, traction)];
+    Ok(scene.with_friction(friction))
 }
 
 /// Bodies whose rigid motions only contact and friction hold, or fail to hold.
@@ -53,16 +53,14 @@ fn held_by_contact() -> Vec<Case> {
         .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 101.0 }, ..scene });
     // Held along x₁ and x₂ at the base only: rotations about x₁ and x₂, and x₃, are held by contact.
     let rotation = block().map(|mut scene| {
-        scene.lower.supports = vec![Support { face: Face::Bottom, components: [true, true, false] }];
-        scene.lower.loads = vec![
-            Load { face: Face::Bottom, traction: pressed },
-            Load { face: Face::X1Max, traction: [0.0, 0.0, 500.0] },
-        ];
+        scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true, true, false])];
+        scene.lower.loads =
+            vec![Load::traction(BlockFace::Bottom, pressed), Load::traction(BlockFace::X1Max, [0.0, 0.0, 500.0])];
         scene
     });
     let moment = stacked(0.3, 1.0, 0.0).map(|mut scene| {
         if let Some(upper) = &mut scene.upper {
-            upper.body.loads.push(Load { face: Face::X1Max, traction: [0.0, 0.0, 2.0] });
+            upper.body.loads.push(Load::traction(BlockFace::X1Max, [0.0, 0.0, 2.0]));
         }
         scene
     });

@@ -5,12 +5,11 @@
 //! ```
 //! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, mean dilatation keeps it.
 
-use crate::held_block::{TWO_POINTS, solution};
+use crate::held_block::{TWO_POINTS, body, solution};
 use crate::stability::case::Case;
 use crate::stability::record::{CaseOutcome, Record};
 use contact::body::elasticity::{Formulation, Material};
-use contact::body::local_pattern::LocalPattern;
-use contact::body::mesh::{Block, Grid};
+use contact::body::mesh::{Grid, block};
 use problems::commands::Failure;
 use std::f64::consts::PI;
 
@@ -39,13 +38,12 @@ pub fn field_error(cells: usize, poisson_ratio: f64, formulation: Formulation) -
     let material = Material::new(1.0, poisson_ratio)?.with_formulation(formulation);
     let grid = Grid { cells: [cells; 3], size: [1.0; 2] };
     let columns = grid.column_count();
-    let block = Block { grid, lower: vec![0.0; columns], upper: vec![1.0; columns] };
-    let pattern = LocalPattern::new(grid.cells, &[]);
+    let body = body(block(&grid, [1; 3], &vec![0.0; columns], &vec![1.0; columns])?, material)?;
     let force = |x| field(x).1.map(|f| material.shear_modulus() * f);
-    let (_, solution) = solution((&pattern, &block), &material, &TWO_POINTS, (&force, &|_| [0.0; 3]))?;
+    let (_, solution) = solution(&body, &TWO_POINTS, (&force, &|_| [0.0; 3]))?;
     let (mut error, mut size) = (0.0, 0.0);
     for (dof, value) in solution.iter().enumerate() {
-        let exact = field(block.coordinates(pattern.shape.local_position(dof / 3))).0[dof % 3];
+        let exact = field(body.mesh.nodes()[dof / 3]).0[dof % 3];
         error += (value - exact).powi(2);
         size += exact.powi(2);
     }

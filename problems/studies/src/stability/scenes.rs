@@ -1,21 +1,23 @@
 //! The scenes that cases are made of. Units: N, mm, MPa.
 
 use contact::body::elasticity::Material;
-use contact::body::mesh::Face;
+use contact::body::mesh::BlockFace;
 use contact::error::SceneError;
-use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
-use contact::shape::{ShapeBounds, SplineKind};
+use contact::scene::{
+    Blocks, BodyScene, ContactScene, CounterSurface, Geometry, Load, Scene, Support, UpperBody, hertz, signorini,
+};
+use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 
 pub const HELD: [bool; 3] = [true; 3];
 
 /// Example 5.1 on 4³ bricks in 2³ subdomains.
 pub fn block() -> Result<Scene, SceneError> {
-    Ok(Scene { mesh: [4; 3], subdomains: [2; 3], ..signorini()? })
+    Ok(signorini()?.with_bricks([4; 3], [2; 3]))
 }
 
 /// Example 5.2 on 4³ bricks in 2³ subdomains per body.
 pub fn pair() -> Result<Scene, SceneError> {
-    Ok(Scene { mesh: [4; 3], subdomains: [2; 3], ..hertz()? })
+    Ok(hertz()?.with_bricks([4; 3], [2; 3]))
 }
 
 /// Two flat blocks of 10 × 10 × 10 mm on each other in uniform stress: pressure `pressure`, shear `shear` along x₁
@@ -25,26 +27,23 @@ pub fn pair() -> Result<Scene, SceneError> {
 pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneError> {
     let material = Material::new(1000.0, 0.0)?;
     let sides = || {
-        vec![
-            Load { face: Face::X1Max, traction: [0.0, 0.0, shear] },
-            Load { face: Face::X1Min, traction: [0.0, 0.0, -shear] },
-        ]
+        vec![Load::traction(BlockFace::X1Max, [0.0, 0.0, shear]), Load::traction(BlockFace::X1Min, [0.0, 0.0, -shear])]
     };
     let mut upper_loads = sides();
-    upper_loads.push(Load { face: Face::Top, traction: [shear, 0.0, -pressure] });
+    upper_loads.push(Load::traction(BlockFace::Top, [shear, 0.0, -pressure]));
     Ok(Scene {
         name: "stacked".into(),
-        size: [10.0, 10.0],
-        mesh: [4; 3],
-        subdomains: [2; 3],
-        lower: BodyScene { material, supports: vec![Support { face: Face::Bottom, components: HELD }], loads: sides() },
-        upper: Some(UpperBody { body: BodyScene { material, supports: vec![], loads: upper_loads }, top: 20.0 }),
+        geometry: Geometry::Blocks(Blocks { size: [10.0, 10.0], bricks: [4; 3], subdomains: [2; 3] }),
+        lower: BodyScene::new(material, vec![Support::new(BlockFace::Bottom, HELD)], sides()),
+        upper: Some(UpperBody { body: BodyScene::new(material, vec![], upper_loads), top: 20.0 }),
         counter_surface: CounterSurface::Plane { height: 10.0 },
-        friction,
-        surface: SplineKind::BSpline(1),
-        control_points: [2, 2],
-        bounds: ShapeBounds { minimum_height: 1e-9, slope: 1e6, volume: [1e-9, 1e12] },
-        start_height: 10.0,
+        contact: ContactScene::along_x3(BlockFace::Top, friction),
+        shape: ShapeScene::Heights(HeightShape {
+            spline: SplineKind::BSpline(1),
+            control_points: [2, 2],
+            bounds: ShapeBounds { minimum_height: 1e-9, slope: 1e6, volume: [1e-9, 1e12] },
+            start_height: 10.0,
+        }),
     })
 }
 
@@ -54,10 +53,8 @@ pub fn footed(gap: f64) -> Result<Scene, SceneError> {
     let stacked = stacked(0.3, 1.0, 0.0)?;
     let mut lower = stacked.lower;
     lower.material = Material::new(1000.0, 0.3)?;
-    lower.loads = vec![
-        Load { face: Face::X1Max, traction: [-20.0, 0.0, 5.0] },
-        Load { face: Face::X1Min, traction: [20.0, 0.0, 5.0] },
-    ];
+    lower.loads =
+        vec![Load::traction(BlockFace::X1Max, [-20.0, 0.0, 5.0]), Load::traction(BlockFace::X1Min, [20.0, 0.0, 5.0])];
     Ok(Scene {
         name: "footed".into(),
         lower,
@@ -81,7 +78,7 @@ pub fn with_materials(scene: Result<Scene, SceneError>, materials: &[(f64, f64)]
 pub fn with_loads(scene: Result<Scene, SceneError>, factor: f64) -> Result<Scene, SceneError> {
     let mut scene = scene?;
     for load in scene.bodies_mut().flat_map(|body| &mut body.loads) {
-        load.traction = load.traction.map(|traction| factor * traction);
+        *load = load.scaled(factor);
     }
     Ok(scene)
 }

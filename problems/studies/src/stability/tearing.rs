@@ -3,8 +3,8 @@
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{HELD, block, pair};
-use contact::body::mesh::Face;
-use contact::scene::{Scene, Support};
+use contact::body::mesh::BlockFace;
+use contact::scene::Support;
 
 const GROUP: &str = "subdomains";
 
@@ -19,27 +19,27 @@ pub fn cases() -> Vec<Case> {
         ("unequal 2 × 1 × 4", [2, 4, 1]),
     ] {
         for (name, scene) in [("block", block()), ("two bodies", pair())] {
-            let scene = scene.map(|scene| Scene { subdomains, ..scene });
+            let scene = scene.map(|scene| scene.with_blocks(|blocks| blocks.subdomains = subdomains));
             cases.push(ContactCase::new(scene).wavy().case(GROUP, format!("{label}, {name}")));
         }
     }
-    let thin = block().map(|scene| Scene { mesh: [4, 4, 1], subdomains: [2, 2, 1], ..scene });
+    let thin = block().map(|scene| scene.with_bricks([4, 4, 1], [2, 2, 1]));
     cases.push(ContactCase::new(thin).case(GROUP, "one layer of bricks"));
-    let single = block().map(|scene| Scene { mesh: [1; 3], subdomains: [1; 3], ..scene });
+    let single = block().map(|scene| scene.with_bricks([1; 3], [1; 3]));
     cases.push(ContactCase::new(single).case(GROUP, "one brick in all"));
     // Edges and corners held by several faces at once: every dof has one row per copy, whatever the number of supports.
     let redundant = block().map(|mut scene| {
         scene.lower.supports = vec![
-            Support { face: Face::X1Min, components: [true, true, false] },
-            Support { face: Face::X2Min, components: [true, true, false] },
-            Support { face: Face::X1Max, components: [true, true, false] },
-            Support { face: Face::X1Min, components: [true, true, false] },
-            Support { face: Face::Bottom, components: HELD },
+            Support::new(BlockFace::X1Min, [true, true, false]),
+            Support::new(BlockFace::X2Min, [true, true, false]),
+            Support::new(BlockFace::X1Max, [true, true, false]),
+            Support::new(BlockFace::X1Min, [true, true, false]),
+            Support::new(BlockFace::Bottom, HELD),
         ];
-        Scene { subdomains: [4; 3], ..scene }
+        scene.with_blocks(|blocks| blocks.subdomains = [4; 3])
     });
     cases.push(ContactCase::new(redundant).case(GROUP, "faces held several times over, loaded face held"));
-    let odd = block().map(|scene| Scene { subdomains: [3, 2, 2], ..scene });
+    let odd = block().map(|scene| scene.with_blocks(|blocks| blocks.subdomains = [3, 2, 2]));
     cases.push(ContactCase::new(odd).refused("Scene").case(GROUP, "subdomains that do not divide the mesh"));
     cases
 }

@@ -21,11 +21,12 @@ const EQUAL: f64 = 1e-10;
 
 /// A scene with its unit of length changed: lengths × s at equal forces.
 fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
-    let mut scene = scene.clone();
-    scene.size = scene.size.map(|length| s * length);
-    scene.start_height *= s;
-    scene.bounds.minimum_height *= s;
-    scene.bounds.volume = scene.bounds.volume.map(|volume| s.powi(3) * volume);
+    let scene = scene.clone().with_blocks(|blocks| blocks.size = blocks.size.map(|length| s * length));
+    let mut scene = scene.with_heights(|heights| {
+        heights.start_height *= s;
+        heights.bounds.minimum_height *= s;
+        heights.bounds.volume = heights.bounds.volume.map(|volume| s.powi(3) * volume);
+    });
     if let Some(upper) = &mut scene.upper {
         upper.top *= s;
     }
@@ -41,13 +42,14 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
         }
         CounterSurface::Plane { height } => CounterSurface::Plane { height: s * height },
         CounterSurface::Grid(grid) => CounterSurface::Grid(grid.scaled(s)),
+        other => other,
     };
     for body in scene.bodies_mut() {
         let material = body.material;
         body.material = Material::new(material.young_modulus() / (s * s), material.poisson_ratio())?
             .with_formulation(material.formulation());
         for load in &mut body.loads {
-            load.traction = load.traction.map(|traction| traction / (s * s));
+            *load = load.scaled(1.0 / (s * s));
         }
     }
     Ok(scene)
@@ -57,11 +59,11 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
 type Heights = fn(&Scene) -> Vec<f64>;
 
 fn flat_controls(scene: &Scene) -> Vec<f64> {
-    vec![scene.start_height; scene.control_points.iter().product()]
+    scene.shape.start()
 }
 
 fn solve(scene: Scene, heights: Heights, direct: bool) -> Result<(Attempt, f64), SceneError> {
-    let (controls, length) = (heights(&scene), scene.start_height);
+    let (controls, length) = (heights(&scene), scene.shape.start()[0]);
     let problem = Arc::new(ContactProblem::new(scene)?);
     let attempt = if direct { by_condensation(&problem, &controls) } else { by_tfeti(&problem, &controls) };
     Ok((attempt, length))
@@ -74,7 +76,8 @@ fn openings(forces: &ContactForces, length: f64) -> Vec<f64> {
 
 /// Strain that the normal forces stand for: openings of closed nodes are zero compared with it.
 fn strain(scene: &Scene, forces: &ContactForces) -> f64 {
-    forces.total_normal_force() / (scene.lower.material.young_modulus() * scene.size[0] * scene.size[1])
+    let area = scene.blocks().map_or(1.0, |blocks| blocks.size[0] * blocks.size[1]);
+    forces.total_normal_force() / (scene.lower.material.young_modulus() * area)
 }
 
 fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Result<(CaseOutcome, String), SceneError> {

@@ -3,10 +3,10 @@
 use contact::body::elasticity::{Formulation, Material};
 use contact::contact_shape::SolverKind;
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
+use contact::equilibrium::{Configuration, ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
-use contact::scene::{CounterSurface, Scene, hertz, signorini};
+use contact::scene::{CounterSurface, Held, Scene, hertz, signorini};
 use contact::tfeti::{AugmentedLagrangianSettings, TornOptions, TotalFeti};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
@@ -66,15 +66,15 @@ fn mean_dilatation_keeps_the_rate_that_standard_bricks_lose() {
 #[test]
 fn patch_test_with_mean_dilatation() {
     for ratio in [0.0, 0.33, 0.499] {
-        let mut scene = Scene { mesh: [6; 3], subdomains: [3; 3], friction: 0.0, ..signorini().unwrap() };
+        let mut scene = signorini().unwrap().with_bricks([6; 3], [3; 3]).with_friction(0.0);
         scene.counter_surface = CounterSurface::Plane { height: 100.0 };
         scene.lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
         // Free to widen: supports hold only what friction would not.
-        scene.lower.supports[0].components = [true, false, false];
+        scene.lower.supports[0].held = Held::Components([true, false, false]);
         let problem = Arc::new(ContactProblem::new(scene).unwrap());
         let forces = newton(&problem).solve(&[100.0; 36], None, 0.0).unwrap().forces;
-        for (force, point) in forces.normal.iter().zip(&problem.boundary.points) {
-            let error = (force / point.area / 3000.0 - 1.0).abs();
+        for pressure in problem.start_rows().pressures(&forces.normal) {
+            let error = (pressure / 3000.0 - 1.0).abs();
             assert!(error < 1e-12, "ν = {ratio}: {error:.1e}");
         }
     }
@@ -83,8 +83,8 @@ fn patch_test_with_mean_dilatation() {
 #[test]
 fn contraction_of_both_paths_agrees() {
     for (scene, friction) in [(signorini().unwrap(), 0.9), (hertz().unwrap(), 0.3)] {
-        let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap());
-        let controls = vec![0.99 * problem.scene.start_height; 36];
+        let problem = Arc::new(ContactProblem::new(scene.with_bricks([4; 3], [2; 3]).with_friction(friction)).unwrap());
+        let controls: Vec<f64> = problem.scene.shape.start().iter().map(|height| 0.99 * height).collect();
         let torn = newton(&problem);
         let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
         let state = torn.solve(&controls, None, 1e-11).unwrap();
@@ -98,7 +98,7 @@ fn contraction_of_both_paths_agrees() {
 
 #[test]
 fn accurate_successive_approximations_contract_as_diagnosed() {
-    let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction: 0.3, ..signorini().unwrap() }).unwrap());
+    let problem = Arc::new(ContactProblem::new(signorini().unwrap().with_bricks([4; 3], [2; 3])).unwrap());
     let controls = vec![100.0; 36];
     let solver = newton(&problem);
     let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
@@ -120,10 +120,8 @@ fn number(seed: u64, index: u64) -> f64 {
 
 /// A random scene: mesh, tearing, materials and loads over eight decades, friction, obstacle, formulation.
 fn random_scene(seed: u64, cells: usize, torn: bool, friction: f64, two: bool) -> Scene {
-    let mut scene = if two { hertz().unwrap() } else { signorini().unwrap() };
-    scene.mesh = [cells; 3];
-    scene.subdomains = [if torn { cells } else { 1 }; 3];
-    scene.friction = friction;
+    let scene = if two { hertz().unwrap() } else { signorini().unwrap() };
+    let mut scene = scene.with_bricks([cells; 3], [if torn { cells } else { 1 }; 3]).with_friction(friction);
     let mut index = 0;
     let mut draw = || {
         index += 1;
@@ -136,7 +134,7 @@ fn random_scene(seed: u64, cells: usize, torn: bool, friction: f64, two: bool) -
     }
     let factor = 10.0_f64.powf(4.0 * draw());
     for load in scene.bodies_mut().flat_map(|body| &mut body.loads) {
-        load.traction = load.traction.map(|traction| factor * traction);
+        *load = load.scaled(factor);
     }
     scene
 }
@@ -144,16 +142,18 @@ fn random_scene(seed: u64, cells: usize, torn: bool, friction: f64, two: bool) -
 /// What every state promises, checked from its forces and jumps alone.
 fn certified(problem: &ContactProblem, controls: &[f64], forces: &ContactForces) {
     assert!(forces.residuals.largest() < 1e-8, "{:?}", forces.residuals);
-    let friction = problem.boundary.friction;
     for (index, &normal) in forces.normal.iter().enumerate() {
         assert!(normal >= 0.0 && normal.is_finite());
         if let Some(traction) = forces.tangential.get(index) {
-            assert!(norm(traction) <= friction * normal * (1.0 + 1e-7) + 1e-300, "{} {normal}", norm(traction));
+            assert!(
+                norm(traction) <= problem.scene.contact.friction * normal * (1.0 + 1e-7) + 1e-300,
+                "{} {normal}",
+                norm(traction)
+            );
         }
     }
     // Vertical equilibrium of the body that nothing but contact holds along x₃.
-    let blocks = problem.blocks(controls).unwrap();
-    let rigid = problem.rigid_scene(&blocks);
+    let rigid = Configuration::new(problem, controls).unwrap().rigid;
     let body = if problem.scene.upper.is_some() { 1 } else { 0 };
     let pressed: f64 = rigid.loads.iter().filter(|load| load.0 == body).map(|load| load.2[2]).sum();
     let carried = forces.total_normal_force();
@@ -175,7 +175,7 @@ fn random_scenes_are_certified_or_refused_with_a_cause() {
         |(seed, cells, torn, friction, two)| {
             let scene = random_scene(seed, cells, torn, friction, two);
             let controls: Vec<f64> =
-                (0..36).map(|index| scene.start_height * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
+                (0..36).map(|index| scene.shape.start()[0] * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
             let torn = newton(&problem);
             let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();

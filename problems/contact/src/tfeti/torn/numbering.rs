@@ -27,15 +27,17 @@ pub struct Numbering {
 
 /// A point with what it stands for.
 type Placed<T> = ([f64; 3], T);
+/// Pieces that belong together, as (body, piece).
+type Group = Vec<Placed<(usize, usize)>>;
 
 impl Numbering {
     /// Numbers the pieces of bodies, in about so many clusters; none: every piece is one.
     pub fn new(bodies: &[Body], clusters: Option<usize>) -> Self {
         let all: usize = bodies.iter().map(|body| body.pieces.len()).sum();
-        let mut groups: Vec<Placed<Vec<Placed<(usize, usize)>>>> = Vec::new();
+        let mut groups: Vec<Placed<Group>> = Vec::new();
         for (number, body) in bodies.iter().enumerate() {
             let piece = |(index, piece): (usize, &Piece)| (centre(body, piece), (number, index));
-            let pieces: Vec<Placed<(usize, usize)>> = body.pieces.iter().enumerate().map(piece).collect();
+            let pieces: Group = body.pieces.iter().enumerate().map(piece).collect();
             let share = |count: usize| (count * pieces.len() + all / 2) / all;
             let count = clusters.map_or(pieces.len(), share).clamp(1, pieces.len());
             let mut own = Vec::new();

@@ -49,8 +49,7 @@ mod tests {
 
     #[test]
     fn two_halves_need_the_face_between_them() {
-        let mut scene = scene::signorini().expect("a scene");
-        (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
+        let scene = scene::signorini().expect("a scene").with_bricks([4; 3], [2; 3]);
         let problem = Arc::new(ContactProblem::new(scene).expect("a problem"));
         assert_eq!(mean_ghosts(&problem, 1).expect("one"), 0.0);
         // Four subdomains with 3 × 3 nodes on the face.

@@ -3,7 +3,7 @@
 use contact::WorkEstimate;
 use contact::contact_shape::ContactState;
 use contact::direct::{CompliantContact, DirectSolver};
-use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactRows, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::solvers::{AnySolver, Processes, SolverKind, SolverPlan};
@@ -54,10 +54,9 @@ impl Examined {
     pub fn new(case: &Case) -> Result<Self, String> {
         let message = |error: contact::error::SceneError| error.to_string();
         let problem = Arc::new(ContactProblem::new(case.scene.clone()).map_err(message)?);
-        let points: usize = case.scene.control_points.iter().product();
-        let controls = case.start.clone().unwrap_or_else(|| vec![case.scene.start_height; points]);
+        let controls = case.start.clone().unwrap_or_else(|| case.scene.shape.start());
         let contact = DirectSolver::new(Arc::clone(&problem)).and_then(|solver| solver.contact(&controls));
-        let base: f64 = case.scene.size.iter().product();
+        let base = problem.contact_area();
         let smallest = contact.as_ref().map_or(0.0, |contact| (NOTHING * contact.load / base).powi(EXPONENT));
         Ok(Self { smallest, controls, estimate: WorkEstimate::of(&case.scene), contact, problem })
     }
@@ -89,8 +88,8 @@ impl Examined {
         let (state, contraction) = self.solved(&solver, controls).map_err(|error| error.to_string())?;
         Ok(Found {
             path: format!("{kind:?}, {:?}", state.solver),
-            objective: self.objective(&state.forces.normal),
-            residual: self.residual(&state.forces),
+            objective: objective(&state.forces.normal, &state.rows),
+            residual: self.residual(&state.forces, &state.rows),
             operations: self.estimate.operations(state.solver, &state.work()),
             may_not_be_unique: contraction.is_some_and(|factor| factor >= 1.0),
         })
@@ -102,8 +101,10 @@ impl Examined {
         let friction = self.problem.boundary.has_friction();
         let exponent = f64::from(EXPONENT);
         let mut dual = vec![0.0; self.problem.boundary.row_count];
-        for (point, force) in self.problem.boundary.points.iter().zip(&state.forces.normal) {
-            dual[point.start] = exponent * (force.max(0.0) / point.area).powi(EXPONENT - 1) / point.area;
+        for (point, (node, force)) in
+            self.problem.boundary.points.iter().zip(state.rows.nodes.iter().zip(&state.forces.normal))
+        {
+            dual[point.start] = exponent * (force.max(0.0) / node.area).powi(EXPONENT - 1) / node.area;
         }
         solver.sensitivities(&state.solution, &dual, 1e-11)?;
         let contraction = if friction { solver.estimate_contraction(&state.solution, 20).ok() } else { None };
@@ -122,7 +123,8 @@ impl Examined {
         let (forces, _) = contact.dimensional(&unknowns);
         let normal: Vec<f64> = self.problem.boundary.points.iter().map(|point| forces[point.start].max(0.0)).collect();
         let residual = norm(&contact.residual(&unknowns, 0.0).0);
-        let objective = self.objective(&normal);
+        let rows = self.problem.positions(&self.controls).and_then(|positions| self.problem.rows(&positions));
+        let objective = objective(&normal, &rows.map_err(|error| error.to_string())?);
         Ok(Found {
             path: "cone programs".into(),
             objective,
@@ -132,24 +134,21 @@ impl Examined {
         })
     }
 
-    /// Θ of normal forces.
-    fn objective(&self, normal: &[f64]) -> f64 {
-        let points = self.problem.boundary.points.iter();
-        points.zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(EXPONENT)).sum()
-    }
-
     /// The residual of given forces in the problem condensed anew: equilibrium and contact law.
-    fn residual(&self, forces: &ContactForces) -> f64 {
+    fn residual(&self, forces: &ContactForces, rows: &ContactRows) -> f64 {
         let Ok(contact) = &self.contact else { return f64::NAN };
         let (boundary, length) = (&self.problem.boundary, contact.unit * contact.load);
         let mut unknowns = vec![0.0; contact.row_count()];
         let mut jumps = vec![0.0; contact.row_count()];
-        for (index, point) in boundary.points.iter().enumerate() {
+        let along = |direction: &[f64; 3], vector: [f64; 3]| -> f64 {
+            direction.iter().zip(vector).map(|(direction, entry)| direction * entry).sum()
+        };
+        for (index, (point, node)) in boundary.points.iter().zip(&rows.nodes).enumerate() {
             unknowns[point.start] = forces.normal[index] / contact.load;
             jumps[point.start] = forces.opening[index] / length;
-            for (offset, &tangent) in point.tangents.iter().enumerate() {
-                unknowns[point.start + 1 + offset] = forces.tangential[index][tangent] / contact.load;
-                jumps[point.start + 1 + offset] = forces.slip[index][tangent] / length;
+            for (row, tangent) in point.rows().zip(&node.directions).skip(1) {
+                unknowns[row] = along(tangent, forces.tangential[index]) / contact.load;
+                jumps[row] = along(tangent, forces.slip[index]) / length;
             }
         }
         // The amplitudes that explain the jumps best. The columns of R are orthonormal up to rounding: a few passes.
@@ -173,9 +172,9 @@ impl Examined {
         let rounding = JUMP_ROUNDINGS * f64::EPSILON * terms;
         let mut law = 0.0_f64;
         for point in &boundary.points {
-            let range = point.start..point.start + point.row_count();
+            let range = point.rows();
             let argument: Vec<f64> = range.clone().map(|row| forces[row] + jumps[row]).collect();
-            let radius = boundary.friction * argument[0].max(0.0);
+            let radius = point.friction * argument[0].max(0.0);
             let length = argument[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
             let factor = if length > radius { radius / length } else { 1.0 };
             law = law.max((forces[range.start] - argument[0].max(0.0)).abs());
@@ -187,4 +186,9 @@ impl Examined {
             contact.residual(&unknowns, 0.0).0[contact.row_count()..].iter().map(|r| r.abs()).fold(0.0, f64::max);
         if defect > rounding { law.max(balance).max(defect) } else { law.max(balance) }
     }
+}
+
+/// Θ of normal forces.
+fn objective(normal: &[f64], rows: &ContactRows) -> f64 {
+    normal.iter().zip(&rows.nodes).map(|(force, node)| (force.max(0.0) / node.area).powi(EXPONENT)).sum()
 }

@@ -1,4 +1,4 @@
-//! Random scenes in five families, as scene files.
+//! Random scenes in five families, as scene files: blocks whose contact normal is x₃.
 //!
 //! ```text
 //! log₁₀(stiffness × gap range / load) ∈ [−1, 7],   𝓕 = 0 in a third of the scenes, else ∈ [0, 3],   ν ∈ [−0.9, 0.4999],
@@ -70,7 +70,8 @@ pub fn scene(seed: u64, index: usize) -> (Family, String) {
     let force = young * mean * range / 10_f64.powf(decades);
     let sizes = Sizes { base: [lengths[0], lengths[1]], height: lengths[2], range, young, force, friction };
     let mut text = format!(
-        "name = \"random {seed} {index}\"\nsize = [{:e}, {:e}]\nfriction = {friction:e}\n\n[mesh]\nbricks = {mesh:?}\n\n",
+        "name = \"random {seed} {index}\"\nsize = [{:e}, {:e}]\nfriction = {friction:e}\n\n[contact]\nnormal = \"x3\"\n\n\
+         [mesh]\nbricks = {mesh:?}\n\n",
         lengths[0], lengths[1]
     );
     bodies(&mut text, family, &sizes, random);
