@@ -29,7 +29,10 @@ impl MeshArrays<'_> {
             10 => CellKind::Tet10,
             4 => CellKind::Tet4,
             _ => {
-                return Err(refused(format!("cells has shape {:?}, expected (m, 8), (m, 10) or (m, 4)", cells.shape())));
+                return Err(refused(format!(
+                    "cells has shape {:?}, expected (m, 8), (m, 10) or (m, 4)",
+                    cells.shape()
+                )));
             }
         };
         let count = nodes.nrows();

@@ -293,7 +293,7 @@ impl ContactScene {
         let case = &self.case;
         let shape = ContactShape::by(Processes::alone().solver(case.plan(wanted))?);
         let measure = case.measure(shape.problem())?;
-        ContactObjective::new(shape, measure)
+        ContactObjective::new(shape, measure, &case.limits)
     }
 
     /// Θ for single shapes, prepared at the first call.

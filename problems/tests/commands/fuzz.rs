@@ -168,9 +168,7 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
         let measure = case.measure(&problem)?;
         let start = case.start.unwrap_or_else(|| case.scene.shape.start());
         match measure {
-            Measure::Pressure(measure) | Measure::LimitedPressure(measure, _) => {
-                drop(PressureCost::new(measure, &problem)?)
-            }
+            Measure::Pressure(measure) => drop(PressureCost::new(measure, &problem)?),
             Measure::Field(measure) => drop(FieldCost::new(measure, &problem)?),
         }
         problem.admissible.check(&nonsmooth::Vector::from_vec(start.clone()))?;

@@ -18,7 +18,7 @@ fn fields(scene: Scene) -> Fields {
     let control = shape.start();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
     let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
-    let objective = ContactObjective::new(shape, Measure::Pressure(measure)).unwrap();
+    let objective = ContactObjective::new(shape, Measure::Pressure(measure), &[]).unwrap();
     let sensitivity = objective.position_sensitivity(&control, &state).unwrap();
     let mut fields = objective.solver().fields(&state).unwrap();
     fields.contact.set_sensitivity(&sensitivity);

@@ -123,7 +123,7 @@ pub fn objective(case: &Case, kind: SolverKind) -> ContactObjective {
     let plan = SolverPlan { kind, ..SolverPlan::new(case.scene.clone(), kind) };
     let shape = ContactShape::by(Processes::alone().solver(plan).expect("a solver"));
     let measure = case.measure(shape.problem()).expect("a measure");
-    ContactObjective::new(shape, measure).expect("an objective")
+    ContactObjective::new(shape, measure, &[]).expect("an objective")
 }
 
 /// The case with other values of some fields.

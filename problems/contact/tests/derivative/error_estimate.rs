@@ -19,7 +19,7 @@ const DIRICHLET: Solver = Some((PreconditionerKind::Dirichlet, DualMethod::Newto
 /// Rounding of the reference, relative to it. Displacements of whole bodies cost a digit more than forces.
 fn rounding(measure: &Measure) -> f64 {
     match measure {
-        Measure::Pressure(_) | Measure::LimitedPressure(..) => 1e-13,
+        Measure::Pressure(_) => 1e-13,
         Measure::Field(_) => 4e-12,
     }
 }
@@ -33,7 +33,7 @@ fn objective(scene: &Scene, solver: Solver, measure: &Measure) -> ContactObjecti
         }
         None => AnySolver::from(DirectSolver::new(problem).unwrap()),
     };
-    ContactObjective::new(ContactShape::by(solver), measure.clone()).unwrap()
+    ContactObjective::new(ContactShape::by(solver), measure.clone(), &[]).unwrap()
 }
 
 fn value(objective: &ContactObjective, control: &Vector, accuracy: Accuracy) -> (f64, ValueError) {

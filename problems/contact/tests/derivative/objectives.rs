@@ -4,7 +4,8 @@ use crate::common::start_height;
 use contact::body::mesh::BlockFace;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldCost, FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
+use contact::cost::{FieldCost, FieldMeasure, Limit, LimitSide, LimitedQuantity};
+use contact::cost::{Measure, NodeWeight, PressureMeasure, Region};
 use contact::scene::{Load, LoadKind, Scene, hertz, signorini};
 use nonsmooth::verify::{Direction, seeded_direction, taylor_test};
 use nonsmooth::{
@@ -44,7 +45,7 @@ fn controls(shape: &ContactShape, seed: u64) -> Vector {
 fn derivative_error(shape: ContactShape, measure: Measure) -> (f64, f64, Vector) {
     let at = controls(&shape, 3);
     let height = start_height(&shape.problem().scene);
-    let objective = ContactObjective::new(shape, measure).unwrap();
+    let objective = ContactObjective::new(shape, measure, &[]).unwrap();
     let direction = Direction::Given(seeded_direction(36, 4));
     let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
     let test = taylor_test(&objective, &at, &direction, &steps).unwrap();
@@ -185,7 +186,8 @@ fn the_limited_peak_has_the_derivative_that_differences_have() {
         let at = controls(&shape, 3);
         let height = start_height(&shape.problem().scene);
         let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
-        let objective = LimitedPeak(ContactObjective::new(shape, Measure::LimitedPressure(norm, limit)).unwrap());
+        let peak = Limit { quantity: LimitedQuantity::PeakPressure, side: LimitSide::AtMost, bound: limit };
+        let objective = LimitedPeak(ContactObjective::new(shape, Measure::Pressure(norm), &[peak]).unwrap());
         let direction = Direction::Given(seeded_direction(36, 4));
         let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
         let test = taylor_test(&objective, &at, &direction, &steps).unwrap();
