@@ -38,6 +38,8 @@ pub struct FrictionProblem {
     pub areas: Vec<f64>,
     /// Unit normals of the contact nodes.
     pub normals: Vec<[f64; 3]>,
+    /// The directions of the two tangential rows of the contact nodes; 0 for rows that are empty.
+    pub tangents: Vec<[[f64; 3]; 2]>,
 }
 
 impl FrictionProblem {
@@ -64,6 +66,7 @@ impl FrictionProblem {
             places: points.iter().map(|point| positions[0][point.node as usize]).collect(),
             areas: rows.areas(),
             normals: rows.nodes.iter().map(|node| node.normal).collect(),
+            tangents: points.iter().zip(&rows.nodes).map(|(point, node)| tangents(node.all_directions(&point.free))).collect(),
         };
         for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
             let piece = body.whole();
@@ -106,4 +109,9 @@ impl FrictionProblem {
         }
         Ok(this)
     }
+}
+
+/// The directions of two tangential rows among those of all rows.
+fn tangents(directions: Vec<[f64; 3]>) -> [[f64; 3]; 2] {
+    [1, 2].map(|row| directions.get(row).copied().unwrap_or_default())
 }

@@ -32,7 +32,7 @@ pub struct LatticeSection {
     pub bounds_of_box: Option<[[f64; 3]; 2]>,
     /// Corner of an oriented box, with edges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("x-unit" = "mm"))]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub corner: Option<[f64; 3]>,
     /// The three edges of an oriented box from its corner, perpendicular to each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -83,8 +83,10 @@ pub struct CylinderSection {
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub point: [f64; 3],
     /// Direction of the axis.
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
     pub axis: [f64; 3],
     /// Direction of the angle 0, across the axis.
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
     pub zero: [f64; 3],
     /// Least and largest radius.
     #[schemars(inner(range(min = 0.0, max = 1e9)), extend("x-unit" = "mm"))]

@@ -58,6 +58,7 @@ pub enum CounterSection {
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
         point: [f64; 3],
         /// Its normal from the body into the obstacle, of any length.
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
         normal: [f64; 3],
     },
     /// A sphere anywhere in space; an obstacle only.
@@ -78,6 +79,7 @@ pub enum CounterSection {
         #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
         point: [f64; 3],
         /// Direction of its axis, of any length.
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
         axis: [f64; 3],
         /// Radius.
         #[schemars(range(max = 1e12), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]

@@ -27,7 +27,7 @@ pub fn load(
     case: &Case,
     (option, file): (&str, Option<&Path>),
 ) -> Result<Vector, SceneError> {
-    let place = file.map_or_else(|| "the start of the scene".to_owned(), |_| option.to_owned());
+    let place = file.map_or("surface.start", |_| option).to_owned();
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
     let shape = &problem.scene.shape;
     let controls = match (file, &case.start) {

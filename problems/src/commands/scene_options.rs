@@ -181,23 +181,23 @@ fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings 
     let body = file.body.iter().map(|body| ("body", &body.loads));
     for (body, loads) in lower.chain(upper).chain(body) {
         for (index, load) in loads.iter().enumerate() {
-            let mut scale = |name: &str, vector: Option<&[f64]>| {
+            let mut scale = |name: &str, unit: &str, vector: Option<&[f64]>| {
                 let Some(vector) = vector else { return Ok(()) };
                 let scaled: Vec<f64> = vector.iter().map(|part| factor * part).collect();
                 if let Some(axis) = scaled.iter().position(|part| part.abs() > LARGEST_TRACTION) {
                     let part = vector[axis];
-                    let allowed = format!("|{name}| ≤ {LARGEST_TRACTION:e}, here {factor:e} times {part:e}");
+                    let allowed = format!("|{name}| ≤ {LARGEST_TRACTION:e} {unit}, here {factor:e} times {part:e}");
                     return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
                 }
                 let value = if name == "pressure" { format!("{:?}", scaled[0]) } else { format!("{scaled:?}") };
                 settings.push(Setting::read(&format!("{body}.loads[{index}].{name}"), &value)?);
                 Ok(())
             };
-            scale("traction", load.traction.as_ref().map(<[f64; 3]>::as_slice))?;
-            scale("pressure", load.pressure.as_ref().map(std::slice::from_ref))?;
-            scale("force", load.force.as_ref().map(<[f64; 3]>::as_slice))?;
-            scale("moment", load.moment.as_ref().map(<[f64; 3]>::as_slice))?;
-            scale("body_force", load.body_force.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("traction", "MPa", load.traction.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("pressure", "MPa", load.pressure.as_ref().map(std::slice::from_ref))?;
+            scale("force", "N", load.force.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("moment", "N mm", load.moment.as_ref().map(<[f64; 3]>::as_slice))?;
+            scale("body_force", "N/mm³", load.body_force.as_ref().map(<[f64; 3]>::as_slice))?;
             if let Some(texts) = &load.formula {
                 let texts: Vec<String> = texts.iter().map(|text| format!("{factor:?}*({text})")).collect();
                 settings.push(Setting::read(&format!("{body}.loads[{index}].formula"), &format!("{texts:?}"))?);

@@ -319,9 +319,13 @@ fn matrices_balance_the_forces_of_the_program() {
     let state = nonsmooth::StateSolver::solve(&shape, &control, None, nonsmooth::Accuracy::TIGHTEST).unwrap();
     let bodies = shape.fields(&state).unwrap().bodies;
     let u: Vec<f64> = unknowns.iter().map(|&[body, node, axis]| bodies[body].displacement[node][axis]).collect();
-    let forces = state.forces.normal.iter().zip(&state.forces.tangential);
-    // With normals along x3, the tangential rows are those of x1 and x2.
-    let r: Vec<f64> = forces.flat_map(|(normal, [first, second, _])| [*normal, *first, *second]).collect();
+    let tangents: Vec<[[f64; 3]; 2]> = serde_json::from_value(lists["tangents"].clone()).unwrap();
+    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let forces = state.forces.normal.iter().zip(&state.forces.tangential).zip(&tangents);
+    let rows = |((normal, tangential), [first, second]): ((&f64, &[f64; 3]), &[[f64; 3]; 2])| {
+        [*normal, dot(*first, *tangential), dot(*second, *tangential)]
+    };
+    let r: Vec<f64> = forces.flat_map(rows).collect();
     let mut rest: Vec<f64> = numbers("load").iter().map(|force| -force).collect();
     for (row, column, value) in stiffness {
         rest[row] += value * u[column];

@@ -160,7 +160,7 @@ fn clusters_that_the_subdomains_or_processes_do_not_make_are_refused() {
     assert!(message.contains("solver.clusters = 8") && message.contains("the nearest are 3 and 9"), "{message}");
     assert_eq!(status, 2);
     let (message, status) = refused(1, &["evaluate", "--mesh", "4", "--subdomains", "4"]);
-    assert!(message.contains("solver.clusters = 8") && message.contains("subdomains need more bricks"), "{message}");
+    assert!(message.contains("solver.clusters = 8") && message.contains("subdomains need more cells"), "{message}");
     assert_eq!(status, 2);
     let (message, _) = refused(1, &["evaluate", "--mesh", "4", "--solver", "direct"]);
     assert!(message.contains("solver.clusters = 8") && message.contains("direct"), "{message}");

@@ -172,7 +172,7 @@ fn the_text_over_the_node_of_the_peak_is_its_pressure() {
     let table = read(scratch, "state/pressure_shape.csv");
     let lines = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
     let nodes: Vec<(f64, f64, f64)> =
-        lines.map(|line| (line[0].parse().unwrap(), line[1].parse().unwrap(), line[2].parse().unwrap())).collect();
+        lines.map(|line| (line[0].parse().unwrap(), line[1].parse().unwrap(), line[3].parse().unwrap())).collect();
     let svg = read(scratch, "state/figures/pressure.svg");
     let document = roxmltree::Document::parse(&svg).unwrap();
     let titles: Vec<&str> = document
@@ -215,11 +215,11 @@ fn the_sketch_says_what_the_scene_says() {
     let svg = read(scratch, "state/figures/sketch.svg");
     // Supports and loads of problems/scenes/hertz.toml; the top has 100 mm².
     for words in [
-        "lower body, x₁ = 0: u₁ = 0",
+        "lower body, x1-min: u₁ = 0",
         "lower body, bottom: u₃ = 0",
-        "upper body, x₂ = 0: u₂ = 0",
+        "upper body, x2-min: u₂ = 0",
         "upper body, top: (0, 0, −2000) MPa, in all 200000 N",
-        "upper body, x₁ = 10 mm: (500, 0, −2000) MPa",
+        "upper body, x1-max: (500, 0, −2000) MPa",
         "upper body: E = 210000 MPa, ν = 0.29",
         "friction coefficient 0.3",
     ] {

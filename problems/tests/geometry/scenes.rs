@@ -4,12 +4,12 @@ use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
 use contact::solvers::{Processes, SolverKind, SolverPlan};
 use nonsmooth::{Accuracy, StateSolver, Vector};
-use scene_file::{Case, SceneFile, Setting};
+use scene_file::{Case, SceneFile};
 use serde_json::Value;
 use std::path::Path;
 
 /// A block of 6³ bricks with a spline of 6 × 6 heights.
-const BLOCK: &str = r#"
+pub const BLOCK: &str = r#"
 name = "block"
 size = [100.0, 100.0]
 friction = 0.3
@@ -124,14 +124,6 @@ pub fn objective(case: &Case, kind: SolverKind) -> ContactObjective {
     let shape = ContactShape::by(Processes::alone().solver(plan).expect("a solver"));
     let measure = case.measure(shape.problem()).expect("a measure");
     ContactObjective::new(shape, measure, &[]).expect("an objective")
-}
-
-/// The case with other values of some fields.
-pub fn with(text: &str, settings: &[(&str, &str)]) -> Case {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let file = SceneFile::parse(text, "scene").expect("a scene file");
-    let settings: Vec<Setting> = settings.iter().map(|(path, value)| Setting::read(path, value).expect(path)).collect();
-    Case::new(&file.with(&settings).expect("settings"), &folder).expect("a scene")
 }
 
 /// Value, gradient and state at some controls.

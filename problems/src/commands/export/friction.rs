@@ -27,6 +27,7 @@ struct FrictionJson<'a> {
     places: &'a [[f64; 3]],
     areas: &'a [f64],
     normals: &'a [[f64; 3]],
+    tangents: &'a [[[f64; 3]; 2]],
     unknowns: &'a [[usize; 3]],
 }
 
@@ -40,10 +41,13 @@ const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in m
 /// [`SceneError::OutOfRange`] naming the mesh.
 pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
     let most = FrictionProblem::most_unknowns(problem);
-    let found = mesh_words::mesh(&problem.scene);
+    let (field, found) = match problem.scene.blocks() {
+        Some(blocks) => ("mesh.bricks", format!("{:?}", blocks.bricks)),
+        None => ("body.mesh", mesh_words::mesh(&problem.scene)),
+    };
     let allowed =
         format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
-    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range("the mesh", found, allowed)) }
+    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range(field, found, allowed)) }
 }
 
 /// The matrices of a shape.
@@ -68,6 +72,7 @@ pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Output
         places: &matrices.places,
         areas: &matrices.areas,
         normals: &matrices.normals,
+        tangents: &matrices.tangents,
         unknowns: &matrices.unknowns,
     };
     let lists = serde_json::to_string(&lists).map_err(Failure::computation)? + "\n";
