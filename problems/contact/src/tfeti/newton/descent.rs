@@ -29,7 +29,8 @@ const MAX_IMBALANCE: f64 = 1e-13;
 /// Residual reduction after which single precision images are replaced.
 const IMAGE_REPLACEMENT: f64 = 1e-4;
 
-/// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
+/// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent. Half
+/// as many show that the jumps must weigh less.
 const MAX_STALLED_PRODUCTS: usize = 10;
 /// Limit like [`MAX_STALLED_PRODUCTS`] for nearly incompressible bodies and for flat or tall bricks: pressures, or
 /// bending, that the preconditioner does not know take products of their own.
@@ -47,7 +48,8 @@ impl TornContact<'_> {
     ) -> Result<f64, ContactError> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
-        let patience = self.patience();
+        let mut patience = self.patience() / 2;
+        let mut since = history.len();
         while residual > settings.tolerance
             && directions.len() < 2 * settings.max_krylov
             && self.products_left(settings) > 0
@@ -66,14 +68,17 @@ impl TornContact<'_> {
                 }
                 history.push(residual);
                 Stage::Contact.reached(history.len() - 1, residual)?;
-                let done =
-                    residual <= settings.tolerance || stagnates(history, patience) || self.products_left(settings) == 0;
+                let stagnates = stagnates(&history[since..], patience);
+                let done = residual <= settings.tolerance || stagnates || self.products_left(settings) == 0;
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }
             }
-            if stagnates(history, patience) {
-                break;
+            if stagnates(&history[since..], patience) {
+                if !directions.weigh_jumps_less() {
+                    break;
+                }
+                (patience, since) = (MAX_STALLED_SLOW, history.len());
             }
         }
         Ok(residual)

@@ -5,9 +5,9 @@
 //! λ + Σ y_k v_k,  a + Σ y_k b_k   change the residual linearly:
 //! c w_E by c Σ y_k (dw_k)_E,      λ − Π(x) by dλ − D (dλ + c dw)   on the contact rows
 //! ```
-//! y minimises the linearised residual, c w_E with weight ½ (normal equations; products of rows of B_E are kept from step
-//! to step). The combination is taken if that residual falls, and repeated, with new derivatives D, while it falls well: a change
-//! of status or of a slip direction invalidates nothing, because F v_k does not depend on it.
+//! y minimises the linearised residual, c w_E with full weight at first (normal equations; products of rows of B_E are
+//! kept from step to step). The combination is taken if that residual falls, and repeated, with new derivatives D, while it
+//! falls well: a change of status or of a slip direction invalidates nothing, because F v_k does not depend on it.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
@@ -22,10 +22,9 @@ use faer::Mat;
 const MAX_SHARE_LEFT: f64 = 0.5;
 /// Rounds of one combination.
 const MAX_ROUNDS: usize = 4;
-/// Weight of the jumps of B_E in the merit, against Coulomb's law: gluing jumps fall with every direction, so that at full
-/// weight they keep statuses from settling (the lug of curved tetrahedra: 120 products at 1, 106 at ½; the paper's scenes:
-/// equal or fewer by two; at ¼ some scenes stagnate).
-const GLUE_SHARE: f64 = 0.5;
+/// Weight of the jumps of B_E in the merit, against Coulomb's law, once the residual has stagnated with both alike. These
+/// jumps fall with every direction, so that at full weight they may keep statuses from settling.
+const SMALL_GLUE_SHARE: f64 = 0.5;
 /// Smallest and largest relative ridge of the normal equations: combinations below it carry no digits.
 const RIDGES: [f64; 2] = [1e-14, 1e-6];
 
@@ -39,8 +38,10 @@ pub struct Direction {
 }
 
 /// All directions of a solve.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Recycled {
+    /// Weight of the jumps of B_E in the merit.
+    glue_share: f64,
     directions: Vec<Direction>,
     /// dw over all rows, per direction.
     jumps: Vec<RowVector>,
@@ -48,7 +49,18 @@ pub struct Recycled {
     products: Vec<Vec<f64>>,
 }
 
+impl Default for Recycled {
+    fn default() -> Self {
+        Self { glue_share: 1.0, directions: vec![], jumps: vec![], products: vec![] }
+    }
+}
+
 impl Recycled {
+    /// Lets jumps of B_E weigh less than Coulomb's law from now on; whether they did not before.
+    pub fn weigh_jumps_less(&mut self) -> bool {
+        std::mem::replace(&mut self.glue_share, SMALL_GLUE_SHARE) > SMALL_GLUE_SHARE
+    }
+
     pub fn len(&self) -> usize {
         self.directions.len()
     }
@@ -114,7 +126,7 @@ impl Recycled {
         if count == 0 {
             return None;
         }
-        let square = (GLUE_SHARE * contact.stiffness).powi(2);
+        let square = (self.glue_share * contact.stiffness).powi(2);
         let mut normal = Mat::from_fn(count, count, |k, l| square * self.product(k, l));
         let slopes = position.equality_slopes(self);
         let mut right: Vec<f64> = slopes.iter().map(|slope| -square * slope).collect();
@@ -220,7 +232,7 @@ impl Position {
         let pairs = self.weights.iter().zip(self.start_slopes.iter().zip(&slopes));
         let square = self.start_square + pairs.map(|(y, (start, here))| y * (start + here)).sum::<f64>();
         let law = projection_residual(contact.boundary, &self.forces, &self.jumps, contact.stiffness);
-        (GLUE_SHARE * contact.stiffness * square.max(0.0).sqrt()).hypot(norm(&law)) / contact.load
+        (recycled.glue_share * contact.stiffness * square.max(0.0).sqrt()).hypot(norm(&law)) / contact.load
     }
 }
 
