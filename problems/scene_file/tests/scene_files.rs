@@ -116,7 +116,7 @@ fn bad_values_are_refused_with_path_value_and_what_is_allowed() {
         ("bricks = [12, 12, 12]", "bricks = [12, 0, 12]", ["mesh.bricks[1] = 0", "≥ 1"]),
         ("bricks = [12, 12, 12]", "bricks = [12, 1.5, 12]", ["mesh.bricks[1] = 1.5", "integer"]),
         ("poisson_ratio = 0.29", "poisson_ratio = 0.5", ["upper.material.poisson_ratio = 0.5", "< 0.5"]),
-        ("form = \"sphere\"", "form = \"ball\"", ["counter_surface.form = ball", "form = \"sphere\""]),
+        ("form = \"sphere\"", "form = \"bowl\"", ["counter_surface.form = bowl", "form = \"sphere\""]),
         ("held = [\"u1\"]", "held = [\"u4\"]", ["lower.supports[0].held[0] = \"u4\"", "\"u3\""]),
         ("radius = 20.0", "radius = 1e400", ["my.toml", "overflowed"]),
         ("[mesh]", "[mesh", ["my.toml", "TOML parse error at line"]),
