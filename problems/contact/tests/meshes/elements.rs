@@ -165,8 +165,7 @@ pub fn traction_forces(mesh: &Mesh, positions: &[Point], faces: &[CellFace], tra
             // reference square is 4/9 for a corner itself, 2/9 for neighbours, 1/9 across.
             let corner = |c: usize| norm(cross(way(c, (c + 1) % 4), way(c, (c + 3) % 4)));
             for c in 0..4 {
-                let area =
-                    4.0 * corner(c) + 2.0 * (corner((c + 1) % 4) + corner((c + 3) % 4)) + corner((c + 2) % 4);
+                let area = 4.0 * corner(c) + 2.0 * (corner((c + 1) % 4) + corner((c + 3) % 4)) + corner((c + 2) % 4);
                 add(nodes[c], area / 36.0);
             }
         }

@@ -33,9 +33,18 @@ const PATHS: [([usize; 3], bool); 6] = [
 /// Edges of a tetrahedron in the order of its middle nodes.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
-/// The mesh of a body: `boxes` per axis; vertices moved by up to about `distortion` of a box, within the sides.
-/// Middle nodes lie in the middle before the map, and are mapped like all others.
+/// The mesh of a body: `boxes` per axis; vertices moved by up to about `distortion` of a box, within the sides. Edges
+/// are straight.
 pub fn mesh(kind: CellKind, boxes: [usize; 3], distortion: f64, map: impl Fn(Point) -> Point) -> Mesh {
+    build(kind, boxes, distortion, map, false)
+}
+
+/// As [`mesh`], but middle nodes are mapped like all others, so that edges are curved where the map is.
+pub fn curved(kind: CellKind, boxes: [usize; 3], distortion: f64, map: impl Fn(Point) -> Point) -> Mesh {
+    build(kind, boxes, distortion, map, true)
+}
+
+fn build(kind: CellKind, boxes: [usize; 3], distortion: f64, map: impl Fn(Point) -> Point, curves: bool) -> Mesh {
     let counts = boxes.map(|count| count + 1);
     let index = |place: [usize; 3]| (place[0] * counts[1] + place[1]) * counts[2] + place[2];
     let mut places: Vec<[usize; 3]> = Vec::new();
@@ -45,6 +54,9 @@ pub fn mesh(kind: CellKind, boxes: [usize; 3], distortion: f64, map: impl Fn(Poi
         }
     }
     let mut points: Vec<Point> = places.iter().map(|place| distorted(*place, boxes, distortion)).collect();
+    if !curves {
+        points.iter_mut().for_each(|point| *point = map(*point));
+    }
     let firsts = places.iter().filter(|place| (0..3).all(|axis| place[axis] < boxes[axis]));
     let mut cells: Vec<Vec<usize>> = Vec::new();
     for first in firsts {
@@ -58,7 +70,10 @@ pub fn mesh(kind: CellKind, boxes: [usize; 3], distortion: f64, map: impl Fn(Poi
     if kind == CellKind::Tet10 {
         add_middles(&mut cells, &mut points);
     }
-    let mesh = Mesh::new(points.into_iter().map(map).collect(), cells.into_iter().map(|cell| (kind, cell))).unwrap();
+    if curves {
+        points.iter_mut().for_each(|point| *point = map(*point));
+    }
+    let mesh = Mesh::new(points, cells.into_iter().map(|cell| (kind, cell))).unwrap();
     sides.into_iter().fold(mesh, |mesh, (name, faces)| mesh.with_face(name, faces).unwrap())
 }
 

@@ -155,8 +155,10 @@ pub fn violation(shape: &ContactShape, state: &ContactState) -> Violation {
         let left = dot(row.normal, u[node]) - row.gap;
         let along = |x: Point| plus(x, -dot(across, x) / dot(across, across), across);
         let slip = along(free(u[node]));
-        let [normal_here, tangential_here] =
-            [state.forces.normal[index], state.forces.tangential.get(index).map_or(0.0, |own| norm(plus(*own, -1.0, tangential)))];
+        let [normal_here, tangential_here] = [
+            state.forces.normal[index],
+            state.forces.tangential.get(index).map_or(0.0, |own| norm(plus(*own, -1.0, tangential))),
+        ];
         found.forces = found.forces.max(((normal_here - normal).abs()).max(tangential_here) / force);
         let status = state.forces.status[index];
         let own = [(-normal).max(0.0) / force, left.max(0.0) / length, (normal * left).abs() / (force * length)];

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
+mod cases;
 mod elements;
 mod grid;
 mod hertz;
@@ -11,5 +12,6 @@ mod patch;
 mod random;
 mod rotated;
 mod setting;
+mod tangents;
 mod taylor;
 mod volume;

@@ -32,8 +32,7 @@ fn graded(place: f64) -> f64 {
 
 fn pressed(kind: CellKind, cells: usize, traction: f64) -> Scene {
     let turn = Rotation::about(ANGLE);
-    let map =
-        |[s, t, r]: Point| turn.of([SIDE * graded(2.0 * s - 1.0), WIDTH * t, SIDE * (1.0 - graded(1.0 - r))]);
+    let map = |[s, t, r]: Point| turn.of([SIDE * graded(2.0 * s - 1.0), WIDTH * t, SIDE * (1.0 - graded(1.0 - r))]);
     let point = turn.of([0.0, 0.0, SIDE + RADIUS - 0.012]);
     let cylinder =
         CounterSurface::Cylinder { point, axis: turn.of([0.0, 1.0, 0.0]), radius: RADIUS, side: Side::Outside };

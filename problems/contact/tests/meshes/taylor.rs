@@ -1,48 +1,15 @@
 //! Subgradients along true normals: remainders of Taylor's formula fall with the square of the step for every obstacle,
 //! both kinds of cells, without and with friction, for pressures and for fields.
 
-use crate::grid::{KINDS, Point, boxed, mesh};
-use crate::setting::{held, pushed, scene};
+use crate::cases::{obstacles, pressed, shape_and_direction};
+use crate::grid::KINDS;
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
-use contact::equilibrium::{ContactStatus, StatusCounts};
-use contact::scene::{CounterSurface, Scene, Side};
-use nonsmooth::verify::seeded_direction;
+use contact::equilibrium::StatusCounts;
+use contact::scene::Scene;
 use nonsmooth::{Accuracy, StateSolver, Vector};
-
-const SIZE: Point = [10.0, 8.0, 6.0];
-/// The least gap on the way of the load, mm.
-const GAP: f64 = 0.02;
-
-/// Obstacles above the top, all of them oblique to the axes there.
-fn obstacles() -> Vec<(&'static str, CounterSurface)> {
-    let top = SIZE[2] + GAP;
-    vec![
-        ("plane", CounterSurface::TiltedPlane { point: [5.0, 4.0, top], normal: [0.03, -0.05, 1.0] }),
-        ("ball", CounterSurface::Ball { centre: [4.2, 4.5, top + 60.0], radius: 60.0, side: Side::Outside }),
-        ("socket", CounterSurface::Ball { centre: [5.2, 3.5, top + 0.3 - 50.0], radius: 50.0, side: Side::Inside }),
-        (
-            "cylinder",
-            CounterSurface::Cylinder {
-                point: [5.0, 4.4, top + 40.0],
-                axis: [1.0, 0.4, 0.03],
-                radius: 40.0,
-                side: Side::Outside,
-            },
-        ),
-        ("waves", CounterSurface::Waves { base: top + 0.1, first: 0.08, second: 0.1, period: 13.0 }),
-    ]
-}
-
-/// A distorted block pressed and pushed from below, held along its near side: nodes of that side have cut rows.
-fn pressed(kind: CellKind, obstacle: CounterSurface, friction: f64) -> Scene {
-    let mut scene = scene(mesh(kind, [3, 3, 2], 0.2, boxed(SIZE)), obstacle, friction);
-    scene.lower.supports = vec![held("x1-min", [true, true, false])];
-    scene.lower.loads = vec![pushed("bottom", [3.0, 2.0, 25.0]), pushed("x1-max", [-2.0, 1.0, 1.0])];
-    scene
-}
 
 fn measures() -> [(&'static str, Measure); 2] {
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
@@ -102,11 +69,6 @@ fn linear_part(remainders: &[f64]) -> f64 {
     (8.0 * q[1] - q[0]) / (3.0 * STEPS[STEPS.len() - 3])
 }
 
-/// A shape and a direction by their number.
-fn shape_and_direction(count: usize, seed: u64) -> [Vector; 2] {
-    [seeded_direction(count, seed) * 0.04, seeded_direction(count, seed + 1000)]
-}
-
 /// The shape of some seed, near which no status changes: the first of a few, so that no case is left out.
 fn case(scene: &Scene, measure: &Measure, seed: u64) -> Found {
     let shape = ContactShape::new(scene.clone(), SolverKind::Newton).unwrap();
@@ -133,7 +95,9 @@ fn check(kind: CellKind) {
                 let (slope, linear) = (slope(&found.remainders), linear_part(&found.remainders) / found.size);
                 println!(
                     "{kind:?}, {name}, friction {friction}, {what}: slope {slope:.3}, linear part {linear:.1e}, {:?}, last remainder {:.1e} of {:.1e}",
-                    found.counts, found.remainders[STEPS.len() - 1], found.value
+                    found.counts,
+                    found.remainders[STEPS.len() - 1],
+                    found.value
                 );
                 assert!((slope - 2.0).abs() < 0.1, "{kind:?}, {name}, friction {friction}, {what}: slope {slope:.3}");
                 assert!(linear.abs() < 1e-8, "{kind:?}, {name}, friction {friction}, {what}: {linear:.1e}");
@@ -157,15 +121,13 @@ fn remainders_are_quadratic_on_tetrahedra() {
     check(KINDS[1]);
 }
 
-/// Taylor's formula notices what it must: a derivative that is off by 1e-4 has another slope.
+/// Taylor's formula notices what it must: the linear part of a derivative that is off by 1e-4.
 #[test]
 fn a_slightly_wrong_derivative_is_noticed() {
     let (_, obstacle) = obstacles().swap_remove(1);
     let [_, (_, measure)] = measures();
     let found = case(&pressed(CellKind::Hex8, obstacle, 0.3), &measure, 11);
-    let wrong: Vec<f64> =
-        found.remainders.iter().zip(STEPS).map(|(r, t)| r + 1e-4 * t * found.derivative).collect();
+    let wrong: Vec<f64> = found.remainders.iter().zip(STEPS).map(|(r, t)| r + 1e-4 * t * found.derivative).collect();
     let linear = linear_part(&wrong) / found.derivative;
-    assert!((linear - 1e-4).abs() < 2e-6, "{linear:.2e}");
-    assert!(ContactStatus::Open != ContactStatus::Slip && found.counts.stick + found.counts.slip > 0);
+    assert!((linear / 1e-4 - 1.0).abs() < 1e-3, "{linear:.2e}");
 }
