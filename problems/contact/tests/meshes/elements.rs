@@ -161,8 +161,8 @@ pub fn traction_forces(mesh: &Mesh, positions: &[Point], faces: &[CellFace], tra
             let area = 0.5 * norm(cross(way(0, 1), way(0, 2)));
             nodes[3..].iter().for_each(|&node| add(node, area / 3.0));
         } else {
-            // |a × b| of a flat bilinear face is bilinear, a quarter of |edge × edge| at a corner, and ∫N_i N_j over the
-            // reference square is 4/9 for a corner itself, 2/9 for neighbours, 1/9 across.
+            // |a × b| of a flat bilinear face is bilinear, a quarter of |edge × edge| at a corner, and ∫N_i N_j over
+            // the reference square is 4/9 for a corner itself, 2/9 for neighbours, 1/9 across.
             let corner = |c: usize| norm(cross(way(c, (c + 1) % 4), way(c, (c + 3) % 4)));
             for c in 0..4 {
                 let area = 4.0 * corner(c) + 2.0 * (corner((c + 1) % 4) + corner((c + 3) % 4)) + corner((c + 2) % 4);

@@ -56,7 +56,8 @@ fn level(obstacle: &CounterSurface, y: Point) -> (f64, Point) {
     }
 }
 
-/// Violations of the foot by a unit normal and a gap of a place: the foot lies on the obstacle, where it looks that way.
+/// Violation of what a unit normal and a gap of a place must be: the foot lies on the obstacle, which looks that way
+/// there.
 fn foot_violation(obstacle: &CounterSurface, x: Point, normal: Point, gap: f64) -> f64 {
     let (value, slope) = level(obstacle, plus(x, gap, normal));
     let size = norm(slope);

@@ -98,7 +98,7 @@ fn the_strip_that_sticks_is_that_of_cattaneo_and_mindlin() {
             for cells in [16, 32] {
                 let found = measure(kind, cells, traction);
                 println!(
-                    "Cattaneo–Mindlin, {kind:?}, {:.2} cells in a: c/a {:.4} expected, {:.4} by moments, {:.4} by status",
+                    "Mindlin, {kind:?}, {:.2} cells in a: c/a {:.4} expected, {:.4} by moments, {:.4} by status",
                     found.resolution, found.expected, found.by_moment, found.by_status
                 );
                 assert!(found.balance < 1e-9, "{:.1e}", found.balance);

@@ -107,8 +107,8 @@ fn a_sheared_block_that_friction_holds_has_the_traction_of_its_load_at_every_nod
     }
 }
 
-/// A block that is pressed and bent over an obstacle of another slope, so that part of it opens: no closed form, but the
-/// same state from whatever side it is seen.
+/// A block that is pressed and bent over an obstacle of another slope, so that part of it opens: no closed form, but
+/// the same state from whatever side it is seen.
 #[test]
 fn a_turned_block_has_the_turned_forces() {
     let bent = |kind: CellKind, angle: f64, friction: f64, path: SolverKind| {

@@ -9,7 +9,7 @@ use contact::body::mesh::Mesh;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, ContactState};
 use contact::cost::{Measure, NodeWeight, PressureMeasure};
-use contact::scene::{CounterSurface, Load, LoadKind, Scene, Side};
+use contact::scene::{CounterSurface, Geometry, Load, LoadKind, Scene, Side};
 use contact::shape::ShapeScene;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -21,8 +21,8 @@ const ROUNDING: f64 = 1e-9;
 /// The same for gradients: total FETI ends its adjoint at a relative residual of 1e-11.
 const OF_SLOPES: f64 = 1e-8;
 
-/// A box, a part of a cylinder, a part of a shell with curved edges or straight ones; all about 10 mm wide, and the place on their top that is nearest to
-/// the obstacle.
+/// A box, a part of a cylinder, a part of a shell with curved edges or straight ones; all about 10 mm wide. And the
+/// place on their top that is nearest to the obstacle.
 fn body(shape: usize, kind: usize, boxes: [usize; 3], distortion: f64) -> (Mesh, Point) {
     let kind = KINDS[kind];
     match shape {
@@ -68,6 +68,7 @@ struct Case {
     shape: usize,
     kind: usize,
     boxes: [usize; 3],
+    pieces: usize,
     distortion: f64,
     form: usize,
     tilt: [f64; 2],
@@ -80,7 +81,7 @@ struct Case {
 }
 
 fn cases() -> impl Strategy<Value = Case> {
-    let body = (0..4_usize, 0..2_usize, [2..6_usize, 2..5_usize, 1..4_usize], 0.0..0.25_f64);
+    let body = (0..4_usize, 0..2_usize, [2..6_usize, 2..5_usize, 1..4_usize], 0.0..0.25_f64, 1..6_usize);
     let obstacle = (0..5_usize, [-0.1..0.1_f64, -0.1..0.1_f64], 15.0..60.0_f64);
     let rest = (0.0..0.45_f64, prop_oneof![1 => Just(0.0), 2 => 0.05..1.0_f64], [-0.3..0.3_f64, -0.3..0.3_f64]);
     let grip = prop_oneof![2 => Just(Grip::Bottom), 1 => Just(Grip::Side)];
@@ -89,6 +90,7 @@ fn cases() -> impl Strategy<Value = Case> {
         kind: body.1,
         boxes: body.2,
         distortion: body.3,
+        pieces: body.4,
         form: obstacle.0,
         tilt: obstacle.1,
         radius: obstacle.2,
@@ -106,6 +108,9 @@ fn scene_of(case: &Case) -> Scene {
     let obstacle = obstacle(case.form, place, case.tilt, case.radius);
     let mut scene = scene(mesh, obstacle, case.friction);
     scene.lower.material = material([1000.0, case.poisson_ratio]);
+    if let Geometry::Mesh(geometry) = &mut scene.geometry {
+        geometry.pieces = Some(case.pieces);
+    }
     let [a, b] = case.push;
     match case.grip {
         Grip::Bottom => {

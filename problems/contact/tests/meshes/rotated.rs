@@ -78,7 +78,8 @@ fn supports_along_oblique_normals_hold_like_those_along_axes() {
                 // Control points move along the edges of the lattice, which turn with the body.
                 let gradient = (&found.gradient - &straight.gradient).norm() / straight.gradient.norm();
                 println!(
-                    "{kind:?}, {path:?}, friction {friction}: u {displacements:.1e}, forces {forces:.1e}, J {value:.1e}, gradient {gradient:.1e}"
+                    "{kind:?}, {path:?}, friction {friction}: u {displacements:.1e}, forces {forces:.1e}, \
+                     J {value:.1e}, gradient {gradient:.1e}"
                 );
                 let worst = displacements.max(forces).max(value).max(gradient);
                 assert!(worst < ROUNDING, "{kind:?}, {path:?}, friction {friction}: {worst:.1e}");

@@ -1,5 +1,5 @@
-//! Jacobians of the outputs, by tangents of the state, against adjoints and against differences: along true normals both
-//! take the turning of the rows and the change of the areas along.
+//! Jacobians of the outputs, by tangents of the state, against adjoints and against differences: along true normals
+//! both take the turning of the rows and the change of the areas along.
 
 use crate::cases::{obstacles, pressed, shape_and_direction};
 use crate::grid::KINDS;

@@ -94,7 +94,8 @@ fn check(kind: CellKind) {
                 let found = case(&scene, &measure, 10 * number as u64 + 1);
                 let (slope, linear) = (slope(&found.remainders), linear_part(&found.remainders) / found.size);
                 println!(
-                    "{kind:?}, {name}, friction {friction}, {what}: slope {slope:.3}, linear part {linear:.1e}, {:?}, last remainder {:.1e} of {:.1e}",
+                    "{kind:?}, {name}, friction {friction}, {what}: slope {slope:.3}, linear part {linear:.1e}, {:?}, \
+                     last remainder {:.1e} of {:.1e}",
                     found.counts,
                     found.remainders[STEPS.len() - 1],
                     found.value
