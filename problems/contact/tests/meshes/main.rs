@@ -6,6 +6,7 @@ mod cases;
 mod elements;
 mod grid;
 mod hertz;
+mod lame;
 mod law;
 mod mindlin;
 mod patch;
