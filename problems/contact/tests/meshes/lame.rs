@@ -108,7 +108,7 @@ fn tubes_and_hollow_balls_in_rigid_walls_have_the_pressure_of_lame() {
             );
             assert!(fine[1] < limit, "{body:?}, {kind:?}, {curves}: {fine:?}");
             // Nodes on the wall, facets inside it: geometry and strains are off by h², in the mean.
-            assert!(rate > 1.9, "{body:?}, {kind:?}, {curves}: {rate:.2}");
+            assert!(rate > 1.85, "{body:?}, {kind:?}, {curves}: {rate:.2}");
             // Forces of facets lean against the normals of the wall by an angle of h, which friction carries.
             assert!(fine[2] < 0.022, "{body:?}, {kind:?}, {curves}: {fine:?}");
             let torn = solved(4, SolverKind::Newton);
