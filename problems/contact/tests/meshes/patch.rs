@@ -13,7 +13,7 @@ const SIZE: Point = [30.0, 20.0, 12.0];
 const PRESSURE: f64 = 25.0;
 const SHEAR: f64 = 5.0;
 /// Rounding of a solve: the condition number of these small bodies is at most 1e5.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = 1e-10;
 
 /// Turned about an axis that is oblique to all sides; not turned where the angle is 0.
 fn block(kind: CellKind, angle: f64, friction: f64) -> Scene {

@@ -13,7 +13,7 @@ use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
 const SIZE: Point = [10.0, 8.0, 6.0];
-const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = 1e-10;
 
 /// Held along the normals of two sides that meet in an edge of the contact face, under a ball; turned by an angle, or
 /// along the axes.
