@@ -18,7 +18,7 @@ use proptest::prelude::*;
 /// What both paths may differ by, relative to the largest force or displacement: rounding times the condition number of
 /// these small bodies.
 const ROUNDING: f64 = 1e-9;
-/// The same for gradients: total FETI ends its adjoint at a relative residual of 1e-11.
+/// What gradients may differ by: total FETI ends its adjoint at a relative residual of 1e-11.
 const OF_SLOPES: f64 = 1e-8;
 
 /// A box, a part of a cylinder, a part of a shell with curved edges or straight ones; all about 10 mm wide. And the
