@@ -66,7 +66,11 @@ impl FrictionProblem {
             places: points.iter().map(|point| positions[0][point.node as usize]).collect(),
             areas: rows.areas(),
             normals: rows.nodes.iter().map(|node| node.normal).collect(),
-            tangents: points.iter().zip(&rows.nodes).map(|(point, node)| tangents(node.all_directions(&point.free))).collect(),
+            tangents: points
+                .iter()
+                .zip(&rows.nodes)
+                .map(|(point, node)| tangents(node.all_directions(&point.free)))
+                .collect(),
         };
         for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
             let piece = body.whole();
