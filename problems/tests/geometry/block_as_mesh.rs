@@ -49,16 +49,16 @@ weight = "nodes"
 fn a_block_as_a_file_has_the_results_of_the_block() {
     let folder = scratch();
     let scene = folder.path().join("block.toml");
-    fs::write(&scene, BLOCK).unwrap();
+    fs::write(&scene, BLOCK).expect("a file");
     let exported = Command::new(env!("CARGO_BIN_EXE_contact3d"))
         .arg(&scene)
         .args(["export", "--msh", "--out"])
         .arg(folder.path().join("out"))
         .output()
-        .unwrap();
+        .expect("an answer");
     assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
     let mesh = folder.path().join("out/lower_body.msh");
-    let mesh = case(&MESH.replace("MESH", mesh.to_str().unwrap()));
+    let mesh = case(&MESH.replace("MESH", mesh.to_str().expect("a path in Unicode")));
     let moves = Vector::from_fn(36, |index, _| 0.4 * (1.7 * index as f64).sin());
     let heights = moves.map(|displacement| 100.0 + displacement);
     for kind in [SolverKind::Newton, SolverKind::Direct] {

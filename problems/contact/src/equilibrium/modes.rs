@@ -349,22 +349,22 @@ mod tests {
         let (x1, x2) = (support(BlockFace::X1Min, [1, 0, 0]), support(BlockFace::X2Min, [0, 1, 0]));
         let across = support(BlockFace::X2Min, [1, 0, 0]);
         let one: [(&[Support], f64, [usize; 3]); 10] = [
-            (&[foot.clone()], 0.0, [0, 0, 0]),
+            (std::slice::from_ref(&foot), 0.0, [0, 0, 0]),
             (&[foot.clone(), x1.clone()], 0.0, [0, 0, 0]),
             (&[x1.clone(), x2.clone()], 0.0, [1, 1, 0]),
-            (&[x1.clone()], 0.0, [3, 3, 1]),
-            (&[x1.clone()], 0.3, [3, 3, 0]),
+            (std::slice::from_ref(&x1), 0.0, [3, 3, 1]),
+            (std::slice::from_ref(&x1), 0.3, [3, 3, 0]),
             (&[plane.clone(), across.clone()], 0.0, [2, 2, 2]),
             (&[plane.clone(), across.clone()], 0.3, [2, 2, 0]),
-            (&[plane.clone()], 0.0, [3, 3, 3]),
+            (std::slice::from_ref(&plane), 0.0, [3, 3, 3]),
             (&[], 0.0, [6, 6, 3]),
             (&[], 0.3, [6, 6, 0]),
         ];
         let two: [Stack<'_>; 5] = [
-            ([&[foot.clone()], &[]], 0.0, [0, 6, 3]),
-            ([&[foot.clone()], &[]], 0.3, [0, 6, 0]),
-            ([&[x1.clone(), plane.clone()], &[x1.clone()]], 0.0, [1, 4, 2]),
-            ([&[x1.clone(), plane.clone()], &[x1.clone()]], 0.3, [1, 4, 1]),
+            ([std::slice::from_ref(&foot), &[]], 0.0, [0, 6, 3]),
+            ([std::slice::from_ref(&foot), &[]], 0.3, [0, 6, 0]),
+            ([&[x1.clone(), plane.clone()], std::slice::from_ref(&x1)], 0.0, [1, 4, 2]),
+            ([&[x1.clone(), plane.clone()], std::slice::from_ref(&x1)], 0.3, [1, 4, 1]),
             ([&[], &[]], 0.3, [6, 12, 6]),
         ];
         for height in [1e-7, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e7] {

@@ -5,7 +5,7 @@
 //! ∂(qᵀK u)/∂x_aᵛ = Σ det [ (σ(u):∇q) G_aᵥ − Σ σ(u)_ji ∂_a q_j G_iᵥ − Σ σ(q)_ji ∂_a u_j G_iᵥ ]      method.md (5.2)
 //! ∂(K u)[x′]     = Σ det [ div x′ σ(u) − σ(u) (∇x′)ᵀ − σ(∇u ∇x′) ] ∇N
 //! ```
-//! With a mean dilatation, λ at the integration points is that of [`VolumeModuli`], and `mean_dilatation` adds its part.
+//! With a mean dilatation, λ at the integration points is that of `VolumeModuli`, and `mean_dilatation` adds its part.
 
 use crate::body::elasticity::Material;
 use crate::body::elasticity::gauss::GaussPoint;
