@@ -128,7 +128,8 @@ fn unusable(index: usize, name: &str) -> FieldsError {
     FieldsError::Name { index, name: name.to_owned(), allowed }
 }
 
-/// Nodes of a tetrahedron of second order that VTK takes one after the other: Gmsh has its last two edges the other way.
+/// Nodes of a tetrahedron of second order that VTK takes one after the other: Gmsh has its last two edges the other
+/// way.
 const TETRAHEDRON: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
 
 /// All bodies as one grid; bodies share no points.

@@ -166,8 +166,8 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// The derivative of Θ by the position of every node of the lower body along the axes at a state already found, unit
-    /// of Θ per mm; 0 for nodes that no control moves.
+    /// The derivative of Θ by the position of every node of the lower body along the axes at a state already found,
+    /// unit of Θ per mm; 0 for nodes that no control moves.
     ///
     /// # Errors
     /// As [`ContactShape::position_sensitivity`].
@@ -213,8 +213,8 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements, and
-    /// where normals or areas change with the shape.
+    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements,
+    /// and where normals or areas change with the shape.
     pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
         match &self.measured {
             Measured::Pressure(objective) if self.solver().problem().geometry.is_fixed() => {
@@ -286,9 +286,9 @@ impl<S: ContactSolver> ContactObjective<S> {
         length.max(LEAST_FIRST_STEP * extent).min(LARGEST_FIRST_STEP * extent)
     }
 
-    /// Coordinates of the controls for the optimizer. For heights, a change of their mean by the height itself is as long
-    /// in them as a change of shape by the first step: bodies that contact holds follow the surface as a whole, so that Θ
-    /// hardly depends on its mean height. Other controls are their own coordinates.
+    /// Coordinates of the controls for the optimizer. For heights, a change of their mean by the height itself is as
+    /// long in them as a change of shape by the first step: bodies that contact holds follow the surface as a whole, so
+    /// that Θ hardly depends on its mean height. Other controls are their own coordinates.
     ///
     /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {

@@ -5,12 +5,12 @@
 //! 0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ 𝓕 r_N,   w_T = −κ r_T with κ ≥ 0, and κ = 0 where |r_T| < 𝓕 r_N
 //! ```
 //! Node by node, r = (λ_N, λ_T) are the contact forces of method.md section 3, and H u is minus the jump, lower body
-//! less upper: w_N is the gap under load, w_T minus the slip. The bodies are not torn; directions that supports hold are
-//! eliminated.
+//! less upper: w_N is the gap under load, w_T minus the slip. The bodies are not torn; directions that supports hold
+//! are eliminated.
 
-use crate::body::NodalAxes;
 use crate::body::loads::piece_loads;
-use crate::equilibrium::ContactProblem;
+use crate::body::{NodalAxes, Piece};
+use crate::equilibrium::{ContactPoint, ContactProblem, NodeRows};
 use crate::error::ContactError;
 
 /// Rows of H per contact node: the normal, then two tangential directions.
@@ -83,7 +83,7 @@ impl FrictionProblem {
                 })
             };
             let numbers: Vec<Option<usize>> = axes.held.iter().enumerate().map(&mut number_of).collect();
-            let mut values = piece.assemble(body, positions, |material| *material);
+            let mut values = piece.assemble(&body.solid, positions, |material| *material);
             let lower = &piece.pattern.lower;
             axes.turn_matrix(lower, &mut values);
             for column in 0..lower.dimension() {
@@ -97,21 +97,28 @@ impl FrictionProblem {
             axes.turn(&mut loads);
             let loads = loads.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
             this.load.extend(loads.map(|(force, _)| force));
-            for (index, (point, node)) in points.iter().zip(&rows.nodes).enumerate() {
-                for side in point.sides.iter().filter(|side| side.body == number) {
-                    let Some(place) = piece.local(side.node) else { continue };
-                    for (row, direction) in node.all_directions(&point.free).into_iter().enumerate() {
-                        let turned = axes.turn_at(place, direction);
-                        for axis in (0..3).filter(|axis| turned[*axis] != 0.0) {
-                            let number = numbers[3 * place + axis];
-                            let entry = |number| (ROWS * index + row, number, -side.weight * turned[axis]);
-                            this.contact.extend(number.map(entry));
-                        }
-                    }
+            let contact = (number, &piece, &axes, numbers.as_slice());
+            points.iter().zip(&rows.nodes).enumerate().for_each(|node| this.add_contact(node, contact));
+        }
+        Ok(this)
+    }
+
+    /// Adds the rows of H of a contact node on one body, given its number, its piece, and the numbers of its unknowns.
+    fn add_contact(
+        &mut self,
+        (index, (point, row)): (usize, (&ContactPoint, &NodeRows)),
+        (body, piece, axes, numbers): (usize, &Piece, &NodalAxes, &[Option<usize>]),
+    ) {
+        for side in point.sides.iter().filter(|side| side.body == body) {
+            let Some(place) = piece.local(side.node) else { continue };
+            for (offset, direction) in row.all_directions(&point.free).into_iter().enumerate() {
+                let turned = axes.turn_at(place, direction);
+                for axis in (0..3).filter(|axis| turned[*axis] != 0.0) {
+                    let entry = |number| (ROWS * index + offset, number, -side.weight * turned[axis]);
+                    self.contact.extend(numbers[3 * place + axis].map(entry));
                 }
             }
         }
-        Ok(this)
     }
 }
 

@@ -107,7 +107,7 @@ fn locking(problem: &ContactProblem, found: &mut Vec<Warning>) {
         let locks = |material: &&Material| {
             material.formulation() == Formulation::Standard && material.poisson_ratio() > MAX_STANDARD_RATIO
         };
-        let Some(material) = body.materials().iter().find(locks) else { continue };
+        let Some(material) = body.solid.materials().iter().find(locks) else { continue };
         let (ratio, name) = (material.poisson_ratio(), &body.name);
         let which = if name == "body" { "the body".to_owned() } else { format!("the {name} body") };
         let text = format!(
@@ -276,8 +276,8 @@ fn zone(
     });
 }
 
-/// Whether supports hold both ends of an edge of the contact face against leaving it across the edge: the edge lies in a
-/// plane of symmetry then.
+/// Whether supports hold both ends of an edge of the contact face against leaving it across the edge: the edge lies in
+/// a plane of symmetry then.
 fn is_symmetry(problem: &ContactProblem, facets: &ContactFacets, ends: [usize; 2], facet: usize) -> bool {
     let body = &problem.bodies[0];
     let positions = body.mesh.nodes();

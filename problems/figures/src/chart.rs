@@ -5,6 +5,8 @@ use super::scale::Axis;
 
 /// Room below a frame for the labels and the title of its horizontal axis, points.
 pub(super) const ROOM_BELOW: f64 = 42.0;
+/// Room at the left for labels and title of the vertical axis, points.
+pub(super) const ROOM_LEFT: f64 = 52.0;
 /// Length of a tick, points.
 const TICK: f64 = 3.5;
 /// Distance of the labels from the frame, points.

@@ -1,6 +1,7 @@
 //! A function of two variables as filled levels, with the points that a method visited.
 
 use super::canvas::{Canvas, INK, Stroke, TITLE, text_width};
+use super::chart::ROOM_LEFT;
 use super::chart::{Frame, ROOM_BELOW};
 use super::colours::CURVES;
 use super::error::{FigureError, count, finite, positive, some};
@@ -8,7 +9,6 @@ use super::figure::Figure;
 use super::grids::grid_faces;
 use super::levels::{ColourScale, Field, contour, fill};
 use super::marks::{self, Sign, kinds, legend_width, rows};
-use super::panel_layout::ROOM_LEFT;
 use super::plan::Plan;
 
 /// Values over a rectangle, lines on it, and a path.

@@ -1,13 +1,11 @@
 //! Where the panels of plans stand: side by side, each to scale, two lines of text above.
 
 use super::canvas::{Canvas, LABEL, TITLE_ROOM, text_width};
-use super::chart::{Frame, ROOM_BELOW};
+use super::chart::{Frame, ROOM_BELOW, ROOM_LEFT};
 use super::plan::Plan;
 
 /// Longer side of a panel, points.
 const SIDE: f64 = 280.0;
-/// Room at the left for labels and title of the vertical axis, points.
-pub(super) const ROOM_LEFT: f64 = 52.0;
 /// Least ratio of the sides of a panel; slimmer ones are not drawn to scale.
 const MIN_SIDE_RATIO: f64 = 0.25;
 /// Upper side of the panels, points.

@@ -2,9 +2,8 @@
 //! seen.
 
 use super::canvas::{Canvas, INK, Place, Stroke, closed, escaped};
-use super::chart::{Frame, Parts};
+use super::chart::{Frame, Parts, ROOM_LEFT};
 use super::error::{FigureError, mesh, positive};
-use super::panel_layout::ROOM_LEFT;
 use super::regions::{Corner, area, borders, lines, parts, sides};
 use super::scale::{Axis, extent, number};
 use std::fmt::Write;

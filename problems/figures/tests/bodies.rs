@@ -196,7 +196,7 @@ fn bodies_that_bend_before_themselves_have_edges_only_where_they_have_some() {
     let mut meshed = block([2; 3], [0.0; 3], 0.0);
     meshed.0.iter_mut().flatten().for_each(|part| *part *= 0.5);
     let [meshed, once] = [meshed, block([1; 3], [0.0; 3], 0.0)].map(|skin| sketch(View::default(), skin));
-    // The same edges; the lines between the faces are thinner.
+    // The edges stay; the lines between the faces are thinner.
     assert!(length(&meshed, "3.5") > 0.0 && length(&once, "3.5") == 0.0);
     assert!((length(&meshed, "7") - length(&once, "7")).abs() < 1.0);
     let bent = plain(vec![(block([8, 2, 2], [0.0; 3], 0.6), 1.0)]);

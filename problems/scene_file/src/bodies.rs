@@ -58,8 +58,8 @@ pub struct MaterialSection {
 pub struct SupportSection {
     /// The face: x1-min, x1-max, x2-min, x2-max, bottom or top of a block, or a physical surface of a mesh.
     pub face: String,
-    /// Displacement components that are zero there, or the one along the normal of the face at the start. On a block, u3
-    /// only on the face opposite to the contact boundary.
+    /// Displacement components that are zero there, or the one along the normal of the face at the start. On a block,
+    /// u3 only on the face opposite to the contact boundary.
     pub held: Vec<Component>,
 }
 
@@ -117,8 +117,8 @@ pub enum Component {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshBodySection {
-    /// The file, beside the scene file. Physical surfaces name faces, physical volumes parts of other material, physical
-    /// points and curves sets of nodes.
+    /// The file, beside the scene file. Physical surfaces name faces, physical volumes parts of other material,
+    /// physical points and curves sets of nodes.
     pub mesh: String,
     /// Unit of lengths in the file.
     #[serde(default)]

@@ -12,8 +12,8 @@ const USUAL_DEGREE: usize = 3;
 /// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
 const MARGIN: f64 = 1e-6;
 
-/// A lattice of control points around a region of the body: x = x0 + sum of B-splines times displacements of the control
-/// points, which are the controls (mm). Nodes outside its box stay where they are.
+/// A lattice of control points around a region of the body: x = x0 + sum of B-splines times displacements of the
+/// control points, which are the controls (mm). Nodes outside its box stay where they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSection {

@@ -55,9 +55,9 @@ pub const FILES: [&str; 4] = ["counter_surface.csv", "start.csv", "wanted_pressu
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// A contact shape optimization problem: an elastic body whose shape is optimized, and the rigid obstacle or second
-/// elastic body that it touches. Units: N, mm, MPa. The body is a block of bricks with an optimized upper surface, over the base spanned by
-/// x1, x2 and standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of control points (body,
-/// lattice).
+/// elastic body that it touches. Units: N, mm, MPa. The body is a block of bricks with an optimized upper surface, over
+/// the base spanned by x1, x2 and standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of
+/// control points (body, lattice).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {

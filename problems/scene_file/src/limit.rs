@@ -48,8 +48,8 @@ impl From<QuantityName> for LimitedQuantity {
 /// The limits of a file, for a scene that a lattice shapes if `lattice`.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] for two limits of a quantity, for one without bounds, for those that contradict each other
-/// and for those that objective and shape do not take.
+/// [`SceneError::OutOfRange`] for two limits of a quantity, for one without bounds, for those that contradict each
+/// other and for those that objective and shape do not take.
 pub(crate) fn limits(
     sections: &[LimitSection],
     objective: &Objective,

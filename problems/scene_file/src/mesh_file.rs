@@ -1,5 +1,5 @@
-//! Bodies from Gmsh files: units, tetrahedra of first order, faces by their owner cells; what is wrong is told before any
-//! work.
+//! Bodies from Gmsh files: units, tetrahedra of first order, faces by their owner cells; what is wrong is told before
+//! any work.
 
 use crate::UnitName;
 use contact::body::mesh::{CellFace, CellKind, Mesh};

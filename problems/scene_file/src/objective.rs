@@ -70,9 +70,9 @@ pub enum MeasureName {
 pub enum WantedSection {
     /// A formula.
     Formula {
-        /// The pressure in MPa over x1, x2, x3 in mm at the start, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * / ^, parentheses,
-        /// functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is -(x1^2); powers
-        /// count from the right: 2^3^2 is 2^9.
+        /// The pressure in MPa over x1, x2, x3 in mm at the start, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * /
+        /// ^, parentheses, functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is
+        /// -(x1^2); powers count from the right: 2^3^2 is 2^9.
         pressure: String,
     },
     /// Pressures on a uniform grid over the base of blocks, bilinear in between.

@@ -34,8 +34,8 @@ pub struct SolverSection {
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Clusters into which the subdomains of all bodies are joined, with six unknowns each in the coarse problem of total
-    /// FETI; at least as many as processes. Default none: every subdomain by itself.
+    /// Clusters into which the subdomains of all bodies are joined, with six unknowns each in the coarse problem of
+    /// total FETI; at least as many as processes. Default none: every subdomain by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub clusters: Option<usize>,
@@ -72,8 +72,8 @@ pub struct OptimizerSection {
     /// relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which
     /// can reach or cross 0.
     pub accuracy: AccuracyName,
-    /// Growing meshes of a coarse-to-fine optimization of blocks, bricks along the axis that has most, the others in proportion;
-    /// empty for one run on the mesh of the scene.
+    /// Growing meshes of a coarse-to-fine optimization of blocks, bricks along the axis that has most, the others in
+    /// proportion; empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub continuation: Vec<usize>,
     /// Optimizations from so many starts on one mesh: the start of the scene, then random surfaces near it, always the

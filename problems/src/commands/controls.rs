@@ -77,8 +77,8 @@ impl Layout {
     }
 }
 
-/// The controls in a text; `name` stands in messages. Rows say the grid that they are made for; a plain array of numbers
-/// does not.
+/// The controls in a text; `name` stands in messages. Rows say the grid that they are made for; a plain array of
+/// numbers does not.
 ///
 /// # Errors
 /// [`SceneError`] for a text that holds neither, another grid, a wrong count, numbers that are not finite.

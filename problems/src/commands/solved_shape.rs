@@ -106,8 +106,8 @@ impl SolvedShape {
         shares.reduce(f64::max)
     }
 
-    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the position of every contact node along
-    /// its normal, which takes an adjoint, if it is asked for.
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the position of every contact node
+    /// along its normal, which takes an adjoint, if it is asked for.
     pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.solver().fields(&self.state)?;
         if sensitivities {

@@ -68,7 +68,7 @@ pub fn solution(
     (force, given): (Field<'_>, Field<'_>),
 ) -> Result<(usize, Vec<f64>), Failure> {
     let (mesh, whole) = (&*body.mesh, body.whole());
-    let mut values = whole.assemble(body, mesh.nodes(), |material| *material);
+    let mut values = whole.assemble(&body.solid, mesh.nodes(), |material| *material);
     let size = whole.dof_count();
     let mut right = vec![0.0; size];
     for (brick, cell) in mesh.cells().enumerate() {

@@ -20,8 +20,8 @@ fn warns_of_few_digits(result: &Value) -> bool {
     result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "few-digits")
 }
 
-/// Heights that differ by rounding change Θ by 1e-5 with direct condensation, the default, by 1e-8 with total FETI, which
-/// finds no state for about a third of the seeds.
+/// Heights that differ by rounding change Θ by 1e-5 with direct condensation, the default, by 1e-8 with total FETI,
+/// which finds no state for about a third of the seeds.
 #[test]
 fn digits_that_condensation_has_lost_are_named() {
     let change = |solver: &str| {

@@ -1,5 +1,5 @@
-//! A block that is written as a Gmsh file and read again gives the results of the block: the file keeps positions, names
-//! and cells, and a lattice over the mesh can be the height surface of the block.
+//! A block that is written as a Gmsh file and read again gives the results of the block: the file keeps positions,
+//! names and cells, and a lattice over the mesh can be the height surface of the block.
 
 use crate::scenes::{BLOCK, case, objective, solved};
 use contact::solvers::SolverKind;

@@ -9,6 +9,7 @@
 #[expect(clippy::module_inception, reason = "the type that the folder is named for")]
 mod body;
 pub mod elasticity;
+mod loaded;
 pub(crate) mod loads;
 pub mod mesh;
 mod nodal_axes;
@@ -16,11 +17,13 @@ mod piece;
 mod rigid_motions;
 pub(crate) mod shape_force;
 pub(crate) mod shape_sensitivity;
+mod solid;
 mod support;
 
-pub use body::{Body, Ends};
+pub use body::Body;
 pub use loads::load_size;
 pub(crate) use nodal_axes::NodalAxes;
 pub use piece::{Patterns, Piece, PiecePattern};
 pub use rigid_motions::{MOTIONS, Place};
+pub use solid::{Ends, Solid};
 pub(crate) use support::{beyond, nodal_normals};

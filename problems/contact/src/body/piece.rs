@@ -4,9 +4,9 @@
 //! share pattern and symbolic factor: all subdomains of a block do.
 
 use crate::body::elasticity::Material;
-use crate::body::elasticity::stiffness::lower_start;
+use crate::body::elasticity::packed::lower_start;
 use crate::body::mesh::{Mesh, narrow};
-use crate::body::{Body, Place};
+use crate::body::{Place, Solid};
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
@@ -19,8 +19,8 @@ use std::sync::Arc;
 pub struct Piece {
     /// Its cells in the mesh, ascending.
     pub cells: Vec<u32>,
-    /// Its nodes, ascending: dofs 3·index + component. Those of a tied node are its displacements against the mean of its
-    /// ends, which are held at zero.
+    /// Its nodes, ascending: dofs 3·index + component. Those of a tied node are its displacements against the mean of
+    /// its ends, which are held at zero.
     pub nodes: Vec<u32>,
     /// What it shares with pieces that are numbered alike.
     pub pattern: Arc<PiecePattern>,
@@ -56,14 +56,14 @@ pub struct Patterns(HashMap<(Vec<LocalCell>, [usize; 3]), Arc<PiecePattern>>);
 
 impl Piece {
     /// The piece of some cells of a body, ascending; patterns are shared by way of `known`.
-    pub fn new(body: &Body, cells: Vec<u32>, known: &mut Patterns) -> Self {
-        let mesh = &*body.mesh;
+    pub fn new(solid: &Solid, cells: Vec<u32>, known: &mut Patterns) -> Self {
+        let mesh = &*solid.mesh;
         let mut nodes: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell(cell as usize).nodes).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let local: Vec<LocalCell> = cells.iter().map(|&cell| local_cell(body, &nodes, cell as usize)).collect();
+        let local: Vec<LocalCell> = cells.iter().map(|&cell| local_cell(solid, &nodes, cell as usize)).collect();
         let points: Vec<[f64; 3]> = nodes.iter().map(|&node| mesh.nodes()[node as usize]).collect();
-        let untied: Vec<usize> = (0..nodes.len()).filter(|&place| body.ends_of(nodes[place]).is_none()).collect();
+        let untied: Vec<usize> = (0..nodes.len()).filter(|&place| solid.ends_of(nodes[place]).is_none()).collect();
         let fixing = fixing_nodes(&untied.iter().map(|&place| points[place]).collect::<Vec<_>>());
         let fixing = fixing.map(|index| untied[index]);
         let key = (local.clone(), fixing);
@@ -88,17 +88,27 @@ impl Piece {
     }
 
     /// What of its nodes moves in rigid motions.
-    pub(crate) fn places<'a>(&'a self, body: &'a Body, positions: &'a [[f64; 3]]) -> impl Iterator<Item = Place> + 'a {
-        self.nodes.iter().map(|&node| body.place(node, positions))
+    pub(crate) fn places<'a>(
+        &'a self,
+        solid: &'a Solid,
+        positions: &'a [[f64; 3]],
+    ) -> impl Iterator<Item = Place> + 'a {
+        self.nodes.iter().map(|&node| solid.place(node, positions))
     }
 
-    /// Values of the stiffness matrix over [`PiecePattern::lower`], for the materials of a body or others in their place.
-    pub fn assemble(&self, body: &Body, positions: &[[f64; 3]], material: impl Fn(&Material) -> Material) -> Vec<f64> {
+    /// Values of the stiffness matrix over [`PiecePattern::lower`], for the materials of a body or others in their
+    /// place.
+    pub fn assemble(
+        &self,
+        solid: &Solid,
+        positions: &[[f64; 3]],
+        material: impl Fn(&Material) -> Material,
+    ) -> Vec<f64> {
         let mut values = vec![0.0; self.pattern.lower.entry_count()];
         let mut scatter = self.pattern.scatter.iter();
         for (&cell, local) in self.cells.iter().zip(&self.pattern.cells) {
             let cell = cell as usize;
-            let mut matrix = body.mesh.cell_nodes(cell, positions).stiffness(&material(body.material(cell)));
+            let mut matrix = solid.mesh.cell_nodes(cell, positions).stiffness(&material(solid.material(cell)));
             local.fold(&mut matrix);
             for (entry, &place) in matrix.iter().zip(scatter.by_ref().take(matrix.len())) {
                 values[place as usize] += entry;
@@ -128,23 +138,23 @@ impl Piece {
     }
 
     /// Adds a force on a node of the mesh to the forces on the piece, as [`add_cell_forces`](Self::add_cell_forces).
-    pub fn add_force(&self, body: &Body, node: u32, force: [f64; 3], sum: &mut [f64]) {
+    pub fn add_force(&self, solid: &Solid, node: u32, force: [f64; 3], sum: &mut [f64]) {
         let mut add = |node: u32, share: f64| {
             let place = self.local(node).expect("invariant: cells of the piece have this node");
             (0..3).for_each(|axis| sum[3 * place + axis] += share * force[axis]);
         };
         add(node, 1.0);
-        body.ends_of(node).into_iter().flatten().for_each(|end| add(end, 0.5));
+        solid.ends_of(node).into_iter().flatten().for_each(|end| add(end, 0.5));
     }
 
     /// The value of a field over the piece at a node of the mesh.
-    pub fn value_at(&self, body: &Body, node: u32, values: &[f64]) -> [f64; 3] {
+    pub fn value_at(&self, solid: &Solid, node: u32, values: &[f64]) -> [f64; 3] {
         let at = |node: u32| {
             let place = self.local(node).expect("invariant: cells of the piece have this node");
             [values[3 * place], values[3 * place + 1], values[3 * place + 2]]
         };
         let own = at(node);
-        match body.ends_of(node).map(|ends| ends.map(at)) {
+        match solid.ends_of(node).map(|ends| ends.map(at)) {
             None => own,
             Some([a, b]) => std::array::from_fn(|axis| own[axis] + 0.5 * (a[axis] + b[axis])),
         }
@@ -161,7 +171,8 @@ impl LocalCell {
         }
     }
 
-    /// K ← Tᵀ K T for u = T û, in which tied nodes move with the mean of their ends; `matrix` is a lower triangle by rows.
+    /// K ← Tᵀ K T for u = T û, in which tied nodes move with the mean of their ends; `matrix` is a lower triangle by
+    /// rows.
     fn fold(&self, matrix: &mut [f64]) {
         let size = 3 * self.nodes.len();
         let at = |row: usize, column: usize| lower_start(row.max(column)) + row.min(column);
@@ -186,10 +197,10 @@ impl LocalCell {
     }
 }
 
-fn local_cell(body: &Body, nodes: &[u32], cell: usize) -> LocalCell {
-    let all = body.mesh.cell(cell).nodes;
+fn local_cell(solid: &Solid, nodes: &[u32], cell: usize) -> LocalCell {
+    let all = solid.mesh.cell(cell).nodes;
     let place = |node: u32| all.iter().position(|other| *other == node).map_or(0, |place| place as u8);
-    let tie = |(index, &node): (usize, &u32)| body.ends_of(node).map(|[a, b]| [index as u8, place(a), place(b)]);
+    let tie = |(index, &node): (usize, &u32)| solid.ends_of(node).map(|[a, b]| [index as u8, place(a), place(b)]);
     let local = |node: &u32| narrow(nodes.binary_search(node).expect("invariant: taken from these cells"));
     LocalCell { nodes: all.iter().map(local).collect(), ties: all.iter().enumerate().filter_map(tie).collect() }
 }

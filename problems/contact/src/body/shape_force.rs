@@ -26,7 +26,7 @@ pub fn shape_forces(
         piece.cell_values(index, u, &mut cell_u);
         let mut moved = vec![vec![0.0; cell_u.len()]; fields.len()];
         let pairs = fields.iter().zip(&mut moved).map(|((_, field), moved)| (field.as_slice(), moved.as_mut_slice()));
-        body.mesh.cell_nodes(cell, positions).add_moved_forces(body.material(cell), &cell_u, pairs);
+        body.mesh.cell_nodes(cell, positions).add_moved_forces(body.solid.material(cell), &cell_u, pairs);
         for ((column, _), mut moved) in fields.iter().zip(moved) {
             moved.iter_mut().for_each(|force| *force = -*force);
             piece.add_cell_forces(index, &moved, &mut forces[*column]);

@@ -4,8 +4,8 @@ use crate::body::loads::load_sensitivities;
 use crate::body::{Body, Piece};
 use std::collections::BTreeMap;
 
-/// Sensitivities of the nodes of one piece (node of the mesh, value), from displacement u and adjoint displacement p over
-/// its dofs. Nodes that do not move, by `moves`, are left out.
+/// Sensitivities of the nodes of one piece (node of the mesh, value), from displacement u and adjoint displacement p
+/// over its dofs. Nodes that do not move, by `moves`, are left out.
 pub fn position_sensitivities(
     body: &Body,
     piece: &Piece,
@@ -23,14 +23,14 @@ pub fn position_sensitivities(
         piece.cell_values(index, u, &mut cell_u);
         piece.cell_values(index, p, &mut cell_p);
         let derivative =
-            body.mesh.cell_nodes(cell, positions).position_derivative(body.material(cell), &cell_u, &cell_p);
+            body.mesh.cell_nodes(cell, positions).position_derivative(body.solid.material(cell), &cell_u, &cell_p);
         for (node, derivative) in nodes.iter().zip(derivative) {
             let sum = sensitivities.entry(*node).or_default();
             (0..3).for_each(|axis| sum[axis] -= derivative[axis]);
         }
     }
     let is_own = |cell: u32| piece.cells.binary_search(&cell).is_ok();
-    let p = |node: u32| piece.value_at(body, node, p);
+    let p = |node: u32| piece.value_at(&body.solid, node, p);
     for (node, value) in load_sensitivities(body, &is_own, positions, &p, &moves) {
         let sum = sensitivities.entry(node).or_default();
         (0..3).for_each(|axis| sum[axis] += value[axis]);

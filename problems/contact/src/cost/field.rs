@@ -130,7 +130,7 @@ impl FieldCost {
         let of_body = |((cells, solved), body): ((&Vec<usize>, &SolvedBody), &Body)| {
             let of_cell = |&cell: &usize| {
                 let u = body.mesh.cell_values(cell, &solved.displacement);
-                compute(&body.mesh.cell_nodes(cell, &solved.positions), body.material(cell).shear_modulus(), &u)
+                compute(&body.mesh.cell_nodes(cell, &solved.positions), body.solid.material(cell).shear_modulus(), &u)
             };
             cells.par_iter().map(of_cell).collect()
         };

@@ -9,12 +9,14 @@ mod field;
 mod limit;
 mod outputs;
 mod pressure;
+mod pressure_measure;
 mod region;
 
 pub use field::{FieldCost, FieldGradient, FieldMeasure};
 pub use limit::{Limit, LimitSide, LimitedQuantity, VolumeLimits};
 pub use outputs::PressureOutputs;
-pub use pressure::{ContactAreas, NodeWeight, PressureCost, PressureMeasure, PressureRoot};
+pub use pressure::PressureCost;
+pub use pressure_measure::{ContactAreas, NodeWeight, PressureMeasure, PressureRoot};
 pub use region::{Region, RegionCells};
 
 /// The function of a contact state that is minimised.

@@ -34,8 +34,8 @@ impl Region {
     /// All of all bodies.
     pub const WHOLE: Self = Self { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None, volume: None };
 
-    /// The cells of the named volume whose centres lie in the box at the start of the scene: no cell enters or leaves the
-    /// region as the shape changes.
+    /// The cells of the named volume whose centres lie in the box at the start of the scene: no cell enters or leaves
+    /// the region as the shape changes.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for a volume that no

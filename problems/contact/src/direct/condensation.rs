@@ -87,7 +87,7 @@ impl CondensationPattern {
 
     /// K in the coordinates of the nodes.
     fn stiffness(&self, body: &Body, positions: &[[f64; 3]]) -> Vec<f64> {
-        let mut values = self.piece.assemble(body, positions, |material| *material);
+        let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
         self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
         values
     }
@@ -111,7 +111,8 @@ impl CondensationPattern {
         shift
     }
 
-    /// f − K u, N, for displacements u and forces f in the coordinates of the nodes; 0 at held dofs, which supports carry.
+    /// f − K u, N, for displacements u and forces f in the coordinates of the nodes; 0 at held dofs, which supports
+    /// carry.
     pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], u: &[f64], mut force: Vec<f64>) -> Mat<f64> {
         let values = self.stiffness(body, positions);
         let mut image = vec![0.0; u.len()];

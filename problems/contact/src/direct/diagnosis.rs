@@ -44,8 +44,8 @@ impl CompliantContact {
         spectral_radius(count, &map)
     }
 
-    /// ‖∂(𝓕 λ_N)/∂λ_T‖₂ over the closed nodes by power iteration: it bounds the contraction of the slip bounds as long as
-    /// the same nodes are closed, whichever of them slide and in whatever direction. Where no node is closed, over
+    /// ‖∂(𝓕 λ_N)/∂λ_T‖₂ over the closed nodes by power iteration: it bounds the contraction of the slip bounds as long
+    /// as the same nodes are closed, whichever of them slide and in whatever direction. Where no node is closed, over
     /// those that friction could wedge in; 0 without friction or where there are none of these either.
     pub(super) fn estimate_contraction(&self, unknowns: &[f64], linearizations: &[Linearization]) -> f64 {
         let boundary = &self.problem.boundary;

@@ -25,8 +25,8 @@ impl DirectSolver {
 }
 
 impl DirectState {
-    /// Displacements over the dofs of a whole body of the state, along the axes. They are solved for when they are first
-    /// asked for, and kept: fields, adjoint and tangents need the same ones.
+    /// Displacements over the dofs of a whole body of the state, along the axes. They are solved for when they are
+    /// first asked for, and kept: fields, adjoint and tangents need the same ones.
     pub(super) fn displacement(&self, number: usize) -> &[f64] {
         self.displacements[number].get_or_init(|| {
             let sizes = self.contact.bodies.iter().map(|body| body.body.free.len());

@@ -327,7 +327,7 @@ impl DirectSolver {
             rest = others;
             let mut load = vec![0.0; piece.dof_count()];
             for (node, force) in own.as_chunks::<3>().0.iter().enumerate() {
-                piece.add_force(body, node as u32, *force, &mut load);
+                piece.add_force(&body.solid, node as u32, *force, &mut load);
             }
             CondensedLoad::new(&state.contact.bodies[number].body, load, state.displacement(number))
         };

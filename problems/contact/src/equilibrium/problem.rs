@@ -117,7 +117,7 @@ impl ContactProblem {
 
     /// The materials of all bodies.
     pub fn materials(&self) -> impl Iterator<Item = &Material> {
-        self.bodies.iter().flat_map(Body::materials)
+        self.bodies.iter().flat_map(|body| body.solid.materials())
     }
 
     /// Why linear systems of the problem are ill conditioned, by material or bricks: total FETI is slow then.
@@ -222,7 +222,8 @@ impl ContactProblem {
         let frames = positions.iter().enumerate().map(frame).collect();
         let names = self.bodies.iter().map(|body| body.name.clone()).collect();
         let arms = self.bodies.iter().zip(positions).enumerate();
-        let arms = arms.flat_map(|(number, (body, positions))| body.arms(positions).map(move |arm| (number, arm)));
+        let arms =
+            arms.flat_map(|(number, (body, positions))| body.solid.arms(positions).map(move |arm| (number, arm)));
         RigidScene { names, held, arms: arms.collect(), loads, contact, frames }
     }
 

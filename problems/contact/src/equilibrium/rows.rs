@@ -91,7 +91,8 @@ impl ContactGeometry {
         self.normal == NormalKind::Surface
     }
 
-    /// Unit normal of the counter surface at the point nearest to a place, or straight above it; none where there is none.
+    /// Unit normal of the counter surface at the point nearest to a place, or straight above it; none where there is
+    /// none.
     pub(crate) fn counter_normal(&self, x: [f64; 3]) -> Option<[f64; 3]> {
         let normal = match self.normal {
             NormalKind::Surface => self.counter.foot(x).ok()?.normal,

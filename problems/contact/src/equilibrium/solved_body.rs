@@ -1,7 +1,7 @@
 //! One body of a solved shape, whatever solver found it.
 
 use crate::body::Body;
-use crate::body::elasticity::stiffness::lower_start;
+use crate::body::elasticity::packed::lower_start;
 use crate::body::mesh::Mesh;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ impl SolvedBody {
     pub fn strain_energy(&self, body: &Body) -> f64 {
         let energy = |cell: usize| {
             let u = self.mesh.cell_values(cell, &self.displacement);
-            let stiffness = self.mesh.cell_nodes(cell, &self.positions).stiffness(body.material(cell));
+            let stiffness = self.mesh.cell_nodes(cell, &self.positions).stiffness(body.solid.material(cell));
             let row = |row: usize| {
                 let entries = &stiffness[lower_start(row)..=lower_start(row) + row];
                 let product: f64 = entries.iter().zip(&u).map(|(k, u)| k * u).sum();

@@ -37,7 +37,7 @@ impl BodyFields {
             .into_par_iter()
             .map(|cell| {
                 let nodes = mesh.cell_nodes(cell, &positions);
-                (nodes.stress(body.material(cell), &mesh.cell_values(cell, &displacement)), nodes.volume())
+                (nodes.stress(body.solid.material(cell), &mesh.cell_values(cell, &displacement)), nodes.volume())
             })
             .collect();
         let stress: Vec<SymmetricTensor> = values.iter().map(|(stress, _)| *stress).collect();

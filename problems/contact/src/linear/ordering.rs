@@ -4,8 +4,8 @@
 //! points are split at the median along their longest extent: those before it, those from it on;
 //! separator: points from the median on that have a neighbour before it       order: before, behind, separator
 //! ```
-//! On a grid, separators are planes. The order is a postorder of its elimination tree, which the factorisation relies on
-//! when trailing unknowns must stay last.
+//! On a grid, separators are planes. The order is a postorder of its elimination tree, which the factorisation relies
+//! on when trailing unknowns must stay last.
 
 /// Neighbours of every point, each without itself.
 pub type Graph = [Vec<u32>];
@@ -82,7 +82,8 @@ impl Dissection<'_> {
     }
 }
 
-/// An order with the same fill that is a postorder of its elimination tree; the last `kept` points stay in their places.
+/// An order with the same fill that is a postorder of its elimination tree; the last `kept` points stay in their
+/// places.
 fn postordered(graph: &Graph, order: Vec<usize>, kept: usize) -> Vec<usize> {
     let count = order.len();
     let mut place = vec![0; count];
@@ -171,7 +172,8 @@ mod tests {
             let (points, mut graph) = grid(counts);
             let count = points.len();
             let last: Vec<usize> = (0..count.min(3)).map(|index| (index * 7 + shift) % count).collect();
-            let last = { let mut unique = Vec::new(); last.iter().for_each(|p| if !unique.contains(p) { unique.push(*p) }); unique };
+            let once = |(index, point): &(usize, &usize)| !last[..*index].contains(point);
+            let last: Vec<usize> = last.iter().enumerate().filter(once).map(|(_, point)| *point).collect();
             // The last points form a chain, as those of a factorisation do.
             for pair in last.windows(2) {
                 graph[pair[0]].push(pair[1] as u32);

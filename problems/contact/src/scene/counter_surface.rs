@@ -95,7 +95,8 @@ impl CounterSurface {
     /// Refuses numbers that make no surface; `field` stands in messages.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for directions of no length, radii that are not positive, numbers that are not finite.
+    /// [`SceneError::OutOfRange`] for directions of no length, radii that are not positive, numbers that are not
+    /// finite.
     pub(crate) fn check(&self, field: &str) -> Result<(), SceneError> {
         let direction = |name: &str, vector: &[f64; 3]| {
             let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();

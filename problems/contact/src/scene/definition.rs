@@ -65,8 +65,8 @@ pub struct Scene {
     pub shape: ShapeScene,
 }
 
-/// Cells of a piece, about, where the scene does not say how many pieces there are: larger ones take too long to factor,
-/// smaller ones make the coarse problem large.
+/// Cells of a piece, about, where the scene does not say how many pieces there are: larger ones take too long to
+/// factor, smaller ones make the coarse problem large.
 const CELLS_PER_PIECE: [usize; 2] = [512, 400];
 
 impl MeshGeometry {

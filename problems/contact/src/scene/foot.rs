@@ -1,4 +1,5 @@
-//! The foot of a point on the counter surface: unit normal and gap, with their derivatives by the position of the point.
+//! The foot of a point on the counter surface: unit normal and gap, with their derivatives by the position of the
+//! point.
 //!
 //! ```text
 //! exact distance:  n from the body into the obstacle,  gap = n·(foot − x),   gap′ = −n·x′
@@ -11,14 +12,7 @@
 //! radius of curvature.
 
 use crate::scene::counter_surface::{CounterSurface, Side};
-
-/// A height with its derivatives.
-#[derive(Debug, Clone, Copy)]
-pub struct Jet {
-    pub height: f64,
-    pub slopes: [f64; 2],
-    pub second: [[f64; 2]; 2],
-}
+use crate::scene::jet::Jet;
 
 /// Normal and gap of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! A surface given by heights on a uniform grid, bilinear in between.
 
 use crate::error::SceneError;
-use crate::scene::foot::Jet;
+use crate::scene::jet::Jet;
 use crate::shape::Pieces;
 use serde::{Deserialize, Serialize};
 

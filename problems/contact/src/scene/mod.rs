@@ -6,6 +6,7 @@ mod counter_surface;
 mod definition;
 pub(crate) mod foot;
 mod height_grid;
+pub(crate) mod jet;
 mod presets;
 mod size;
 

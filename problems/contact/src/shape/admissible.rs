@@ -94,8 +94,8 @@ impl AdmissibleSet {
     /// The box of a lattice with bounds of node displacements.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for names that the mesh does not have and for too many nodes; [`SceneError::Set`] when
-    /// bounds contradict each other.
+    /// [`SceneError::OutOfRange`] for names that the mesh does not have and for too many nodes; [`SceneError::Set`]
+    /// when bounds contradict each other.
     pub(crate) fn of_lattice(lattice: &LatticeShape, map: &ShapeMap, mesh: &Mesh) -> Result<Self, SceneError> {
         let mut rows: Vec<NamedRow> = Vec::new();
         for (index, bound) in lattice.node_bounds.iter().enumerate() {

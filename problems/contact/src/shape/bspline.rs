@@ -27,7 +27,7 @@ impl Basis {
         Self::clamped(degree, count, "surface.degree")
     }
 
-    /// The same, or the one constant function for one of degree 0; `field` stands in messages.
+    /// A clamped uniform basis, or the one constant function for one of degree 0; `field` stands in messages.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] unless degree < count.

@@ -35,8 +35,8 @@ impl TotalFeti {
             *scaled = physical / nu;
         }
         let iterate = &state.solution.iterate;
-        // A sensitivity of J over the size of the body, or over its displacement where that is larger; below the rounding
-        // of this scale, no residual means anything.
+        // A sensitivity of J over the size of the body, or over its displacement where that is larger; below the
+        // rounding of this scale, no residual means anything.
         let size_of_body = smallest_extent(&state.positions[0]);
         let load = loads.map(|loads| DisplacementLoad::new(&contact.operator, loads, &state.displacement));
         let [work, size] = load.as_ref().map_or([0.0; 2], |load| load.products);

@@ -185,31 +185,8 @@ impl TotalFeti {
         seconds.recovery = clock.lap();
         let Configuration { positions, rows, .. } = configuration;
         let constraints = Arc::clone(&self.model.constraints);
-        let state = TornState {
-            positions,
-            rows: Arc::clone(&rows),
-            space,
-            constraints,
-            solution,
-            displacement,
-            stiffness,
-            load,
-            system,
-        };
-        let state = ContactState {
-            forces,
-            rows,
-            load,
-            solver,
-            reason: None,
-            contraction: None,
-            stages: Some(seconds),
-            work,
-            adjoint_applications: AtomicUsize::new(0),
-            solution: state,
-            bodies: None,
-        };
-        Ok((state, returned))
+        let state = TornState { positions, rows, space, constraints, solution, displacement, stiffness, load, system };
+        Ok((solved_state(solver, state, forces, seconds, work), returned))
     }
 
     /// What flat or tall bricks leave of c: the diagonal of K is their largest stiffness, and most displacements of the
@@ -281,4 +258,27 @@ fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: 
         }
     }
     admissible
+}
+
+/// A state with its forces, without what is found on demand.
+fn solved_state(
+    solver: SolverKind,
+    solution: TornState,
+    forces: ContactForces,
+    seconds: StageSeconds,
+    work: Work,
+) -> ContactState<TornState> {
+    ContactState {
+        forces,
+        rows: Arc::clone(&solution.rows),
+        load: solution.load,
+        solver,
+        reason: None,
+        contraction: None,
+        stages: Some(seconds),
+        work,
+        adjoint_applications: AtomicUsize::new(0),
+        solution,
+        bodies: None,
+    }
 }

@@ -130,5 +130,6 @@ fn a_slightly_wrong_derivative_is_noticed() {
     let found = case(&pressed(CellKind::Hex8, obstacle, 0.3), &measure, 11);
     let wrong: Vec<f64> = found.remainders.iter().zip(STEPS).map(|(r, t)| r + 1e-4 * t * found.derivative).collect();
     let linear = linear_part(&wrong) / found.derivative;
-    assert!((linear / 1e-4 - 1.0).abs() < 1e-3, "{linear:.2e}");
+    // The derivative itself is known to 1e-7 of its size, its remainders are of second order in steps of 1e-3.
+    assert!((linear / 1e-4 - 1.0).abs() < 1e-2, "{linear:.2e}");
 }

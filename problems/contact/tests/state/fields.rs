@@ -98,7 +98,7 @@ fn section_force(fields: &BodyFields, body: &Body, layer: usize) -> [f64; 3] {
         let CellNodes::Hex8(nodes) = fields.mesh.cell_nodes(cell, &fields.positions) else { panic!("bricks alone") };
         let (points, u) = (hex8::gauss_points(&nodes), fields.mesh.cell_values(cell, &fields.displacement));
         for point in &points {
-            let stress = stress_at(point, &points, body.material(cell), &u);
+            let stress = stress_at(point, &points, body.solid.material(cell), &u);
             let mut full = [[0.0; 3]; 3];
             for (value, (row, column)) in stress.iter().zip(COMPONENTS) {
                 (full[row][column], full[column][row]) = (*value, *value);

@@ -18,8 +18,8 @@ pub struct ExportOptions {
     /// With --run: the shape of evaluation K instead.
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
-    /// Bodies and surface as triangles. Without one of --stl, --step, --csv, --msh, --friction-problem the first three are
-    /// written, or for a mesh --stl, --csv and --msh.
+    /// Bodies and surface as triangles. Without one of --stl, --step, --csv, --msh, --friction-problem the first three
+    /// are written, or for a mesh --stl, --csv and --msh.
     #[arg(long)]
     pub stl: bool,
     /// The B-spline surface, and the lower body as a solid, for CAD systems.

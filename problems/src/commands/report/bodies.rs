@@ -21,7 +21,7 @@ const MAX_LIFT: f64 = 0.25;
 /// their materials differ, one per body. Shapes without fields are left out.
 pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Vec<Result<Figure, FigureError>> {
     match &objective.solver().problem().bodies[..] {
-        [lower, upper] if lower.materials() != upper.materials() => vec![
+        [lower, upper] if lower.solid.materials() != upper.solid.materials() => vec![
             stresses(objective, shapes, ("von_mises_lower", ", lower body", &[0])),
             stresses(objective, shapes, ("von_mises_upper", ", upper body", &[1])),
         ],

@@ -80,7 +80,8 @@ impl ContactSurface {
         self.axes.map(|axis| vector[axis])
     }
 
-    /// A field along the line on which the other coordinate of the plan is that of a node: (coordinate, value), in order.
+    /// A field along the line on which the other coordinate of the plan is that of a node: (coordinate, value), in
+    /// order.
     pub fn cut(&self, axis: usize, node: usize, values: &[f64]) -> Vec<(f64, f64)> {
         let (along, across) = (self.axes[axis], self.axes[1 - axis]);
         let level = self.places[node][across];

@@ -16,7 +16,8 @@ pub struct GaussPoint<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> GaussPoint<T, N> {
-    /// The point of a cell with these nodes at which the shape functions have the gradients `reference[v][k]` = ∂N_v/∂ξ_k.
+    /// The point of a cell with these nodes at which the shape functions have the gradients `reference[v][k]` =
+    /// ∂N_v/∂ξ_k.
     pub fn new(nodes: &[[T; 3]; N], reference: &[[f64; 3]; N], weight: f64) -> Self {
         let mut jacobian = [[T::constant(0.0); 3]; 3];
         for (node, gradient) in nodes.iter().zip(reference) {

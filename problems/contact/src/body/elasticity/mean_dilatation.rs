@@ -6,11 +6,11 @@
 //! ∂/∂x_aᵛ:  κ (D′(u) D(q) + D(u) D′(q) − D(u) D(q) V′/V)/V,   D′(u) = Σ det [ ∇·u G_aᵥ − Σ ∂_a u_i G_iᵥ ],   V′ = Σ det G_aᵥ
 //! ```
 //! One constraint per cell instead of one per integration point: nearly incompressible cells keep their bending modes.
-//! On hexahedra, the rest is the deviatoric part, integrated fully. The four points of a tetrahedron see too few modes by
-//! it alone: there, the mean takes λ tr(ε) only (κ becomes λ), and 2μ ε remains at the points.
+//! On hexahedra, the rest is the deviatoric part, integrated fully. The four points of a tetrahedron see too few modes
+//! by it alone: there, the mean takes λ tr(ε) only (κ becomes λ), and 2μ ε remains at the points.
 
 use crate::body::elasticity::gauss::GaussPoint;
-use crate::body::elasticity::stiffness::lower_start;
+use crate::body::elasticity::packed::lower_start;
 use crate::body::elasticity::{Formulation, Material};
 use crate::scalar::Scalar;
 

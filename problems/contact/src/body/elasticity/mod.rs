@@ -12,6 +12,7 @@ pub(crate) mod gauss;
 pub mod hex8;
 mod material;
 mod mean_dilatation;
+pub(crate) mod packed;
 pub mod stiffness;
 pub mod stress;
 #[cfg(test)]

@@ -10,15 +10,11 @@
 use crate::body::elasticity::Material;
 use crate::body::elasticity::gauss::GaussPoint;
 use crate::body::elasticity::mean_dilatation::{self, VolumeModuli};
+use crate::body::elasticity::packed::lower_start;
 use crate::scalar::Scalar;
 
 /// A displacement gradient `[j][i]` = ∂u_j/∂x_i, or a stress.
 pub type Tensor = [[f64; 3]; 3];
-
-/// Entries of the lower triangle of a symmetric matrix by rows, of which `row` are before row `row`.
-pub const fn lower_start(row: usize) -> usize {
-    row * (row + 1) / 2
-}
 
 /// Stiffness matrix of a cell as its lower triangle by rows, N/mm; dof 3v + component.
 pub fn stiffness<T: Scalar, const N: usize>(points: &[GaussPoint<T, N>], material: &Material) -> Vec<T> {

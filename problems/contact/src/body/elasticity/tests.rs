@@ -1,7 +1,8 @@
 //! Both kinds of cells and both formulations: kernels, patch states, derivatives against dual numbers, stresses.
 
 use super::facet::{AreaKind, integrate, length, tributary_areas};
-use super::stiffness::{lower_start, stress};
+use super::packed::lower_start;
+use super::stiffness::stress;
 use super::stress::{COMPONENTS, SymmetricTensor, stress_at, von_mises};
 use super::{CellNodes, Formulation, Material, hex8, tet10};
 use crate::scalar::{Dual, Scalar};

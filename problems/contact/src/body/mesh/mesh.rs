@@ -49,8 +49,8 @@ impl Mesh {
     /// A mesh of one volume, without names.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for positions that are not finite, a mesh without cells, a cell with another number of
-    /// nodes than its kind has, with a node that does not exist or with one node twice.
+    /// [`SceneError::OutOfRange`] for positions that are not finite, a mesh without cells, a cell with another number
+    /// of nodes than its kind has, with a node that does not exist or with one node twice.
     pub fn new<C: AsRef<[usize]>>(
         nodes: Vec<[f64; 3]>,
         cells: impl IntoIterator<Item = (CellKind, C)>,

@@ -5,9 +5,9 @@
 //! Qᵀ F T y + Δ y − QᵀGᵀ δa = Qᵀ δd,   G T y = δe,      δλ = T y,   δw = δd − F δλ + Gᵀ δa
 //! ```
 //! The system of a Newton step with another right side; the adjoint solves with its transpose. With G T y = δe the
-//! forces r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) + ∂B u − ∂g is one product, free
-//! of rigid parts that would cancel. Directions are in single precision, and so is all else where the tolerance allows
-//! it; otherwise the residual is computed afresh in double precision after every cycle.
+//! forces r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) + ∂B u − ∂g is one
+//! product, free of rigid parts that would cancel. Directions are in single precision, and so is all else where the
+//! tolerance allows it; otherwise the residual is computed afresh in double precision after every cycle.
 
 use crate::equilibrium::law::{Friction, Linearization};
 use crate::equilibrium::{RowChange, Tangents};

@@ -125,7 +125,8 @@ impl<'a> ActiveRows<'a> {
         })
     }
 
-    /// Unknowns from all rows: those of B_E and of stick nodes as they are, those of slip nodes by `slip(node, rows, e, β)`.
+    /// Unknowns from all rows: those of B_E and of stick nodes as they are, those of slip nodes by `slip(node, rows, e,
+    /// β)`.
     fn reduce<V: Entry>(
         &self,
         all: &RowVector<V>,

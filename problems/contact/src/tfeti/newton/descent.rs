@@ -29,8 +29,8 @@ const MAX_IMBALANCE: f64 = 1e-13;
 /// Residual reduction after which single precision images are replaced.
 const IMAGE_REPLACEMENT: f64 = 1e-4;
 
-/// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent. Half
-/// as many show that the jumps must weigh less.
+/// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
+/// Half as many show that the jumps must weigh less.
 const MAX_STALLED_PRODUCTS: usize = 10;
 /// Limit like [`MAX_STALLED_PRODUCTS`] for nearly incompressible bodies and for flat or tall bricks: pressures, or
 /// bending, that the preconditioner does not know take products of their own.

@@ -6,8 +6,9 @@
 //! c w_E by c Σ y_k (dw_k)_E,      λ − Π(x) by dλ − D (dλ + c dw)   on the contact rows
 //! ```
 //! y minimises the linearised residual, c w_E with full weight at first (normal equations; products of rows of B_E are
-//! kept from step to step). The combination is taken if that residual falls, and repeated, with new derivatives D, while it
-//! falls well: a change of status or of a slip direction invalidates nothing, because F v_k does not depend on it.
+//! kept from step to step). The combination is taken if that residual falls, and repeated, with new derivatives D,
+//! while it falls well: a change of status or of a slip direction invalidates nothing, because F v_k does not depend on
+//! it.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
@@ -22,8 +23,8 @@ use faer::Mat;
 const MAX_SHARE_LEFT: f64 = 0.5;
 /// Rounds of one combination.
 const MAX_ROUNDS: usize = 4;
-/// Weight of the jumps of B_E in the merit, against Coulomb's law, once the residual has stagnated with both alike. These
-/// jumps fall with every direction, so that at full weight they may keep statuses from settling.
+/// Weight of the jumps of B_E in the merit, against Coulomb's law, once the residual has stagnated with both alike.
+/// These jumps fall with every direction, so that at full weight they may keep statuses from settling.
 const SMALL_GLUE_SHARE: f64 = 0.5;
 /// Smallest and largest relative ridge of the normal equations: combinations below it carry no digits.
 const RIDGES: [f64; 2] = [1e-14, 1e-6];

@@ -6,8 +6,8 @@
 //! contact:             Σ_sides weight · (mean over the copies along d)/ν,  ν = √(Σ weight²/m)
 //! λ_physical = λ/ν,  jump_physical = ν·jump:   all rows of a node share ν, so the friction cone keeps its form
 //! ```
-//! B_D Bᵀ = I with stiffness weights between bodies and between the copies of a glued node: B_D gives the softer one the
-//! larger share. Copies of contact nodes share equally: with gluing and contact rows, B is orthogonal there.
+//! B_D Bᵀ = I with stiffness weights between bodies and between the copies of a glued node: B_D gives the softer one
+//! the larger share. Copies of contact nodes share equally: with gluing and contact rows, B is orthogonal there.
 //!
 //! A process has the rows of B_E that touch its subdomains, by ascending owner: the owner of a row is the first
 //! subdomain that it touches. Rows of owners in other processes come first. Contact rows are known to all processes;
@@ -19,12 +19,13 @@ use crate::error::ContactError;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::tfeti::torn::cluster_rows::ClusterRows;
+use crate::tfeti::torn::copies::Copies;
 use crate::tfeti::torn::distribution::Distribution;
 use crate::tfeti::torn::interface::{Interface, InterfaceBuilder};
 use crate::tfeti::torn::joints::Joints;
 use crate::tfeti::torn::numbering::Numbering;
 use crate::tfeti::torn::scene_rows::{
-    ContactNode, Copies, EqualityRow, SceneRows, SparseRow, contact_cells, contact_rows, possible_directions,
+    ContactNode, EqualityRow, SceneRows, SparseRow, contact_cells, contact_rows, possible_directions,
 };
 use crate::tfeti::torn::vectors::RowVector;
 use std::collections::{BTreeSet, HashSet};
@@ -111,12 +112,7 @@ impl Constraints {
         };
         let equality = [rows(|row| &row.entries), rows(|row| &row.weights)];
         let joined = cluster_rows(&all, numbering, &subdomains);
-        let first = numbering.starts()[subdomains.start];
-        let mut touched = vec![false; own];
-        let mut touch = |dof: usize| touched.get_mut(dof.wrapping_sub(first)).into_iter().for_each(|t| *t = true);
-        all.equality.iter().flat_map(|row| &row.entries).for_each(|(dof, _)| touch(*dof));
-        all.joined.iter().flatten().flatten().for_each(|(dof, _)| touch(*dof));
-        dofs.iter().flatten().for_each(|&dof| touch(dof));
+        let touched = touched(&all, &dofs, numbering.starts()[subdomains.start], own);
         let owners = boundary.points.iter().zip(&node_owners);
         let contact_owners: Vec<usize> =
             owners.flat_map(|(point, owner)| std::iter::repeat_n(*owner, point.row_count())).collect();
@@ -292,6 +288,16 @@ impl Constraints {
     }
 }
 
+/// Which of the dofs of this process, from `first` on, have rows.
+fn touched(all: &SceneRows, contact: &[Vec<usize>], first: usize, own: usize) -> Vec<bool> {
+    let mut touched = vec![false; own];
+    let mut touch = |dof: usize| touched.get_mut(dof.wrapping_sub(first)).into_iter().for_each(|t| *t = true);
+    all.equality.iter().flat_map(|row| &row.entries).for_each(|(dof, _)| touch(*dof));
+    all.joined.iter().flatten().flatten().for_each(|(dof, _)| touch(*dof));
+    contact.iter().flatten().for_each(|&dof| touch(dof));
+    touched
+}
+
 /// Places of the rows of B_E of this process among those of all.
 fn places(all: &SceneRows) -> Vec<usize> {
     let mut before = vec![0; all.counts.len() + 1];
@@ -312,7 +318,8 @@ fn cluster_rows(all: &SceneRows, numbering: &Numbering, subdomains: &Range<usize
     rows.map(|(index, rows)| ClusterRows::new(rows, starts(index))).collect()
 }
 
-/// What this process exchanges: all processes that a row of B_E touches need its dofs; those of a contact node, the owner.
+/// What this process exchanges: all processes that a row of B_E touches need its dofs; those of a contact node, the
+/// owner.
 fn interface(
     all: &SceneRows,
     (nodes, owners): (&[Vec<usize>], &[usize]),

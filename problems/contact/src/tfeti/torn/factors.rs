@@ -105,11 +105,11 @@ impl SubdomainFactors {
         interior: Option<&InteriorClass>,
     ) -> Result<Self, ContactError> {
         let pattern = &*piece.pattern;
-        let stiffness = piece.assemble(body, positions, |material| *material);
+        let stiffness = piece.assemble(&body.solid, positions, |material| *material);
         let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
-        let is_near = body.materials().iter().any(|material| material.compressible_neighbour().is_some());
-        let compressible = is_near.then(|| piece.assemble(body, positions, near));
-        let coordinates: Vec<Place> = piece.places(body, positions).collect();
+        let is_near = body.solid.materials().iter().any(|material| material.compressible_neighbour().is_some());
+        let compressible = is_near.then(|| piece.assemble(&body.solid, positions, near));
+        let coordinates: Vec<Place> = piece.places(&body.solid, positions).collect();
         let modes = orthonormal_modes(&coordinates);
         let resultants = std::array::from_fn(|mode| dot(&modes[mode], load));
         let regularised = regularise(pattern, &stiffness, &modes);

@@ -6,8 +6,8 @@
 //! Three nodes of an interface leave its subdomains no motion against each other; few nodes keep the factors small.
 
 use crate::body::Body;
+use crate::tfeti::torn::copies::Copies;
 use crate::tfeti::torn::numbering::Numbering;
-use crate::tfeti::torn::scene_rows::Copies;
 use std::collections::{BTreeMap, HashMap};
 
 /// Joints of an interface.

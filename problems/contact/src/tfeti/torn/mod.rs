@@ -9,6 +9,7 @@ mod cluster_factors;
 mod cluster_rows;
 mod coarse_pattern;
 mod constraints;
+mod copies;
 mod distribution;
 mod factors;
 mod interface;

@@ -153,8 +153,8 @@ impl TornModel {
         (&self.problem.bodies[*body], &self.problem.bodies[*body].pieces[*piece])
     }
 
-    /// Factors the subdomains of a shape. Bodies but the lower one keep their shape: they are factored at the first call
-    /// and shared afterwards. Factorisations are counted over all processes.
+    /// Factors the subdomains of a shape. Bodies but the lower one keep their shape: they are factored at the first
+    /// call and shared afterwards. Factorisations are counted over all processes.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
@@ -226,7 +226,7 @@ impl TornModel {
             let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
             let places = |index: usize| {
                 let (body, piece) = self.piece(index);
-                piece.places(body, positions).collect::<Vec<Place>>()
+                piece.places(&body.solid, positions).collect::<Vec<Place>>()
             };
             let coordinates: Vec<Vec<Place>> = members.clone().map(places).collect();
             let first = parts.partition_point(|(index, _)| *index < members.start);
@@ -282,7 +282,7 @@ impl TornModel {
                 let body = subdomain.body;
                 let coefficients = &motion[MOTIONS * body..MOTIONS * (body + 1)];
                 let (own, piece) = self.piece(index);
-                let places = piece.places(own, &positions[body]);
+                let places = piece.places(&own.solid, &positions[body]);
                 let displacement: Vec<f64> =
                     places.flat_map(|place| rigid.displacement(body, coefficients, place)).collect();
                 amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
@@ -348,8 +348,8 @@ impl Analyses {
         Ok(symbolic)
     }
 
-    /// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B
-    /// and B_c. Dofs with rows of B_c have no jumps between subdomains: contact rows alone move them in the
+    /// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of
+    /// B and B_c. Dofs with rows of B_c have no jumps between subdomains: contact rows alone move them in the
     /// preconditioner.
     fn interior(
         &mut self,
@@ -416,7 +416,7 @@ fn check_motions(
     }
     let nodes = |number: usize| {
         let (body, piece) = numbering.place(number);
-        bodies[body].pieces[piece].places(&bodies[body], bodies[body].mesh.nodes()).collect::<Vec<_>>()
+        bodies[body].pieces[piece].places(&bodies[body].solid, bodies[body].mesh.nodes()).collect::<Vec<_>>()
     };
     let own = distribution.owned();
     let first = if own.is_empty() { 0 } else { numbering.cluster_of(own.start) };

@@ -23,7 +23,7 @@ pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
         let mut own: Vec<[f64; 3]> = loads[first..first + 3 * count].as_chunks::<3>().0.to_vec();
         first += 3 * count;
         for node in 0..count as u32 {
-            let Some(ends) = body.ends_of(node) else { continue };
+            let Some(ends) = body.solid.ends_of(node) else { continue };
             let tied = own[node as usize];
             ends.iter().for_each(|&end| (0..3).for_each(|axis| own[end as usize][axis] += 0.5 * tied[axis]));
         }
@@ -66,7 +66,7 @@ fn whole_body(model: &TornModel, number: usize, positions: &Positions, torn: &[f
         spread[node] += copy.iter().zip(displacement[node]).map(|(copy, mean)| (copy - mean).powi(2)).sum::<f64>();
     }
     for node in 0..count as u32 {
-        if let Some([a, b]) = body.ends_of(node).map(|ends| ends.map(|end| displacement[end as usize])) {
+        if let Some([a, b]) = body.solid.ends_of(node).map(|ends| ends.map(|end| displacement[end as usize])) {
             let own = &mut displacement[node as usize];
             (0..3).for_each(|axis| own[axis] += 0.5 * (a[axis] + b[axis]));
         }

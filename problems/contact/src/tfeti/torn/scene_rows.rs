@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, Side};
+use crate::tfeti::torn::copies::Copies;
 use crate::tfeti::torn::joints::Joints;
 use crate::tfeti::torn::numbering::Numbering;
 use nalgebra::DMatrix;
@@ -11,62 +12,6 @@ use std::ops::Range;
 
 /// Entries (torn dof, value) of one row.
 pub type SparseRow = Vec<(usize, f64)>;
-
-/// First torn dofs of the copies of every node of a body, by ascending subdomain, with their stiffnesses.
-#[derive(Debug)]
-pub struct Copies {
-    starts: Vec<u32>,
-    dofs: Vec<usize>,
-    /// Of copies that are not the only one: what their subdomain resists motions of the node with, roughly, N/mm.
-    stiffness: Vec<f64>,
-}
-
-impl Copies {
-    /// The copies of the nodes of a body.
-    pub fn new(number: usize, body: &Body, numbering: &Numbering) -> Self {
-        let mut pieces: Vec<(usize, usize)> =
-            (0..body.pieces.len()).map(|piece| (numbering.number(number, piece), piece)).collect();
-        pieces.sort_unstable();
-        let mut starts = vec![0_u32; body.mesh.node_count() + 1];
-        let nodes = || pieces.iter().flat_map(|&(_, piece)| body.pieces[piece].nodes.iter());
-        nodes().for_each(|&node| starts[node as usize + 1] += 1);
-        (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
-        let (mut next, mut dofs) = (starts.clone(), vec![0; starts[starts.len() - 1] as usize]);
-        let mut stiffness = vec![0.0; dofs.len()];
-        let is_shared = |node: &u32| starts[*node as usize + 1] - starts[*node as usize] > 1;
-        for &(subdomain, piece) in &pieces {
-            let piece = &body.pieces[piece];
-            for &cell in &piece.cells {
-                let (cell, nodes) = (cell as usize, body.mesh.cell(cell as usize).nodes);
-                if nodes.iter().any(is_shared) {
-                    let own = body.mesh.cell_nodes(cell, body.mesh.nodes()).node_stiffness();
-                    let modulus = body.material(cell).shear_modulus();
-                    nodes
-                        .iter()
-                        .zip(own)
-                        .for_each(|(&node, own)| stiffness[next[node as usize] as usize] += modulus * own);
-                }
-            }
-            for (local, &node) in piece.nodes.iter().enumerate() {
-                dofs[next[node as usize] as usize] = numbering.starts()[subdomain] + 3 * local;
-                next[node as usize] += 1;
-            }
-        }
-        Self { starts, dofs, stiffness }
-    }
-
-    /// Stiffnesses of the copies of a node.
-    fn stiffness_of(&self, node: u32) -> &[f64] {
-        let node = node as usize;
-        &self.stiffness[self.starts[node] as usize..self.starts[node + 1] as usize]
-    }
-
-    /// First torn dofs of the copies of a node.
-    pub fn of(&self, node: u32) -> &[usize] {
-        let node = node as usize;
-        &self.dofs[self.starts[node] as usize..self.starts[node + 1] as usize]
-    }
-}
 
 /// A row of B_E.
 pub struct EqualityRow {
@@ -142,8 +87,8 @@ fn along(first: usize, direction: &[f64; 3], factor: f64) -> impl Iterator<Item 
     (0..3).map(move |axis| (first + axis, entries[axis])).filter(|(_, entry)| *entry != 0.0)
 }
 
-/// Visits the rows of supports and gluing of one node, with the cluster whose row of B_c they are; returns the number of
-/// gluing rows of B_E.
+/// Visits the rows of supports and gluing of one node, with the cluster whose row of B_c they are; returns the number
+/// of gluing rows of B_E.
 fn node_rows(
     body: &Body,
     node: u32,
@@ -187,8 +132,8 @@ fn helmert(count: usize) -> Vec<Vec<f64>> {
     (1..count).map(row).collect()
 }
 
-/// (H W Hᵀ)⁻¹ H W with the compliances W of the copies: the share of a jump that each of them takes is larger the softer
-/// its subdomain is there.
+/// (H W Hᵀ)⁻¹ H W with the compliances W of the copies: the share of a jump that each of them takes is larger the
+/// softer its subdomain is there.
 fn weighted(rows: &[Vec<f64>], stiffness: &[f64]) -> Vec<Vec<f64>> {
     let soft = DMatrix::from_fn(rows.len(), stiffness.len(), |i, copy| rows[i][copy] / stiffness[copy]);
     let product = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
@@ -220,7 +165,7 @@ impl ContactNode {
     pub fn new(point: &ContactPoint, bodies: &[Body], copies: &[Copies], cell_of: &[HashMap<u32, u32>]) -> Self {
         let part = |side: &Side| {
             let (body, cell) = (&bodies[side.body], cell_of[side.body].get(&side.node).copied().unwrap_or(0));
-            let compliance = 1.0 / body.material(cell as usize).young_modulus();
+            let compliance = 1.0 / body.solid.material(cell as usize).young_modulus();
             let copies = copies[side.body].of(side.node).to_vec();
             ContactPart { weight: side.weight, copies, compliance, free: body.free(side.node) }
         };
