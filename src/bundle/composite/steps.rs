@@ -10,7 +10,7 @@ use crate::bundle::proposers::proposer::Position;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
-use crate::{ConstraintEvaluation, Matrix, Polyhedron, Vector};
+use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Polyhedron, Vector};
 use std::rc::Rc;
 
 /// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h
@@ -58,7 +58,8 @@ impl Steps {
         }
     }
 
-    /// Remembers a Jacobian, unless h has a curvature of its own: the model then uses no curvature of the outputs.
+    /// Remembers a Jacobian, unless h has a curvature of its own and nothing else is curved: the model then uses no
+    /// curvature of the outputs.
     pub(super) fn remember(
         &mut self,
         outer: &dyn OuterFunction,
@@ -66,13 +67,15 @@ impl Steps {
         (known, constraints): (&Linearization, Option<&ConstraintEvaluation>),
     ) {
         let Linearization { outputs, jacobian, .. } = known;
-        if without_panic(|| outer.curvature(outputs, jacobian).is_none()).unwrap_or_default() {
+        let own = || without_panic(|| outer.curvature(outputs, jacobian).is_some()).unwrap_or(true);
+        if constraints.is_some() || !own() {
             self.memory.remember(point, &stacked(jacobian, constraints.map(|found| &found.jacobian)));
         }
     }
 
     /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights
-    /// of the solution.
+    /// of the solution. Beside smooth constraints, it is added at once, with theirs: along a curved constraint every step
+    /// meets it.
     fn solve(
         &mut self,
         at: &mut Position<'_>,
@@ -93,10 +96,11 @@ impl Steps {
             curvature: None,
             origin: changes.origin,
         };
-        if !self.needs_curvature || outer.curvature(outputs, jacobian).is_some() {
+        let constraints = at.state.constraints.as_ref();
+        let curved = constraints.is_some_and(|found| !found.kinds().contains(&ConstraintKind::Nonsmooth));
+        if !curved && (!self.needs_curvature || outer.curvature(outputs, jacobian).is_some()) {
             return model.solve(at.solver);
         }
-        let constraints = at.state.constraints.as_ref();
         let all = stacked(jacobian, constraints.and_then(|found| found.jacobian_at(&base.point)));
         if all.nrows() < jacobian.nrows() + constraints.map_or(0, |found| found.kinds().len()) {
             return model.solve(at.solver);

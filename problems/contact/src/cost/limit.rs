@@ -38,8 +38,9 @@ pub struct Limit {
     pub bound: f64,
 }
 
-/// Share of a bound that counts as rounding.
-const ROUNDING: f64 = 1e-9;
+/// Share of a bound by which a quantity that keeps it may be off. Steps along a curved constraint miss it by a little;
+/// steps that do nothing but remove the rest would cost a state each.
+const ALLOWANCE: f64 = 1e-8;
 
 impl LimitedQuantity {
     /// Its name in scene files and reports.
@@ -67,14 +68,14 @@ impl LimitedQuantity {
 }
 
 impl Limit {
-    /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to rounding.
+    /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-8 of the bound.
     pub fn excess(&self, value: f64) -> f64 {
         let excess = match self.side {
             LimitSide::AtMost => value - self.bound,
             LimitSide::AtLeast => self.bound - value,
             LimitSide::Equal => (value - self.bound).abs(),
         };
-        if excess > ROUNDING * self.bound.abs() { excess } else { 0.0 }
+        if excess > ALLOWANCE * self.bound.abs() { excess } else { 0.0 }
     }
 
     /// What it asks of the optimizer.
@@ -120,7 +121,7 @@ impl VolumeLimits {
         self.limits.iter().map(|limit| volume / self.unit(limit)).collect()
     }
 
-    /// Values and gradients of the constraints, one per limit.
+    /// Values and gradients of the constraints, one per limit; a value within 1e-8 of the bound counts as at it.
     pub fn constraints(&self, problem: &ContactProblem, controls: &Vector) -> Vec<(f64, Vector)> {
         if self.limits.is_empty() {
             return vec![];
@@ -130,7 +131,9 @@ impl VolumeLimits {
         let slope = Vector::from_vec(problem.map.pull_back(&slope));
         let pairs = self.limits.iter().zip(self.values(problem, controls));
         let constraint = |(limit, value): (&Limit, f64)| {
-            (limit.sign() * (value - limit.bound), &slope * (limit.sign() / self.unit(limit)))
+            let beyond = limit.sign() * (value - limit.bound);
+            let kept = beyond.abs() <= ALLOWANCE * limit.bound;
+            (if kept { 0.0 } else { beyond }, &slope * (limit.sign() / self.unit(limit)))
         };
         pairs.map(constraint).collect()
     }
