@@ -25,7 +25,7 @@ from scipy.sparse.linalg import splu
 
 
 def read(folder):
-    """K, f, H, b = (g, 0, 0) per node, μ per node, areas."""
+    """K, f, H, b = (g, 0, 0) per node, μ per node, areas, tangents of the rows."""
     folder = Path(folder) / "friction"
     lists = json.loads((folder / "problem.json").read_text())
     stiffness = scipy.io.mmread(folder / lists["stiffness"]).tocsc()
@@ -34,7 +34,7 @@ def read(folder):
     offset = np.zeros(3 * len(gaps))
     offset[::3] = gaps
     assert stiffness.shape == (len(load),) * 2 and contact.shape == (len(offset), len(load))
-    return stiffness, load, contact, offset, np.array(lists["friction"]), np.array(lists["areas"])
+    return stiffness, load, contact, offset, np.array(lists["friction"]), np.array(lists["areas"]), np.array(lists["tangents"])
 
 
 def local_law(w, r, friction, scale, held):
@@ -142,11 +142,12 @@ def solve_by_siconos(name, stiffness, load, contact, offset, friction):
     return r * force, f"Siconos {name}: {steps} steps, its error {error:.1e}"
 
 
-def forces(path, areas):
+def forces(path, areas, tangents):
     """Contact forces of the program from its table of pressures and tractions."""
     table = np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    columns = [table[name] * areas for name in ("pressure_MPa", "traction_1_MPa", "traction_2_MPa")]
-    return np.stack(columns, axis=1).ravel()
+    tractions = np.stack([table[f"traction_{axis}_MPa"] for axis in (1, 2, 3)], axis=1)
+    along = np.einsum("nrk,nk->nr", tangents, tractions)
+    return (np.column_stack([table["pressure_MPa"], along]) * areas[:, None]).ravel()
 
 
 def main():
@@ -156,7 +157,7 @@ def main():
     parser.add_argument("--solver", choices=["scipy", "admm", "nsn_ac"], default="scipy")
     parser.add_argument("--within", type=float, default=1e-8, help="largest difference allowed, relative to the largest force")
     arguments = parser.parse_args()
-    stiffness, load, contact, offset, friction, areas = read(arguments.folder)
+    stiffness, load, contact, offset, friction, areas, tangents = read(arguments.folder)
     print(f"{len(load)} displacements, {len(friction)} contact nodes, {stiffness.nnz} entries of K")
     clock = time.time()
     problem = stiffness, load, contact, offset, friction
@@ -164,7 +165,7 @@ def main():
     found, words = solve(*problem)
     print(f"{words}; {time.time() - clock:.1f} s; total normal force {found[::3].sum():.10e} N")
     if arguments.forces:
-        expected = forces(arguments.forces, areas)
+        expected = forces(arguments.forces, areas, tangents)
         difference = np.abs(found - expected).max() / np.abs(expected).max()
         print(f"largest difference from the program's forces: {difference:.1e} of the largest force")
         assert difference <= arguments.within, difference

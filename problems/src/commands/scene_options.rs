@@ -44,11 +44,14 @@ const OPTIONS: [SceneOption; 14] = [
             "Bricks of each body: per edge, or along x1, x2 and x3",
         )
     },
-    option(
-        (BODIES, "subdomains", "S|S1xS2xS3"),
-        &["mesh.subdomains"],
-        "Subdomains of each body, per edge or along x1, x2 and x3; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2 does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge",
-    ),
+    SceneOption {
+        adapt: of_blocks,
+        ..option(
+            (BODIES, "subdomains", "S|S1xS2xS3"),
+            &["mesh.subdomains"],
+            "Subdomains of each body, per edge or along x1, x2 and x3; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2 does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge",
+        )
+    },
     option((BODIES, "friction", "MU"), &["friction"], "Coulomb friction coefficient"),
     SceneOption {
         adapt: of_bodies,
@@ -151,10 +154,21 @@ const fn option(
 
 /// Subdomains of the file that do not fit the new mesh give way to those that do.
 fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
+    let mut settings = of_blocks(file, "", std::mem::take(&mut settings))?;
     let mesh = file.with(&settings)?.mesh;
     let fits = |counts: [usize; 3]| mesh.bricks.iter().zip(counts).all(|(n, count)| count > 0 && n % count == 0);
     settings.extend((!mesh.subdomains.is_some_and(fits)).then(|| Setting::removal("mesh.subdomains")));
     Ok(settings)
+}
+
+/// Refuses fields of blocks for a mesh.
+fn of_blocks(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
+    match settings.first() {
+        Some(setting) if file.body.is_some() => {
+            Err(SceneError::out_of_range(setting.path(), "given for a mesh", "only for blocks; body.pieces divides a mesh"))
+        }
+        _ => Ok(settings),
+    }
 }
 
 /// The fields of a body that is not there are left out.

@@ -7,6 +7,7 @@ use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::Session;
 use crate::commands::numbers::rounded;
 use crate::commands::solved_shape::{self, ContactObjective};
+use contact::body::mesh::smallest_extent;
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
 use contact::solvers::Usage;
@@ -21,7 +22,7 @@ pub const DIRECTION_SEED: u64 = 20_231;
 const STEP_COUNT: i32 = 9;
 /// Ratio of neighbouring steps: ten to the power −½.
 const STEP_RATIO: f64 = 0.316_227_766_016_837_94;
-/// Largest step tried, relative to the height of the body.
+/// Largest step tried, relative to the height of a block or to the smallest extent of a mesh.
 const MAX_RELATIVE_STEP: f64 = 1e-3;
 /// Number of times that the step is shortened in search of the smooth piece.
 const MAX_SHORTENINGS: usize = 16;
@@ -119,8 +120,12 @@ fn smooth_step(
     direction: &Vector,
     status: &[ContactStatus],
 ) -> Result<f64, Failure> {
-    let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;
-    let mut step = MAX_RELATIVE_STEP * height;
+    let problem = objective.solver().problem();
+    let size = match problem.scene.heights() {
+        Some(_) => control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64,
+        None => smallest_extent(&problem.map.positions(control.as_slice())),
+    };
+    let mut step = MAX_RELATIVE_STEP * size;
     let stays = |step: f64| -> Result<bool, Failure> {
         let state = objective.solver().solve(&(control + direction * step), None, Accuracy::TIGHTEST)?;
         Ok(state.forces.status == status)

@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::body::elasticity::{Formulation, Material};
 use crate::body::loads::nodal_forces;
-use crate::body::mesh::{BlockFace, CellFace, Mesh, block};
+use crate::body::mesh::{BlockFace, Mesh, block, smallest_extent};
 use crate::equilibrium::cell_shapes::CellShapes;
 use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactRows};
@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// Poisson's ratio from which standard cells are nearly incompressible: total FETI takes hundreds of products.
 const LOCKING: f64 = 0.499;
+/// Area of a contact face, over the square of the smallest extent of the body, that is rounding.
+const SMALLEST_AREA: f64 = 1e-9;
 
 /// Positions of the nodes of all bodies, lower first, mm.
 pub type Positions = Vec<Arc<Vec<[f64; 3]>>>;
@@ -74,6 +76,11 @@ impl ContactProblem {
         let rows = self.rows(&self.start_positions()).map_err(refused)?;
         self.boundary.retain(|index| !rows.nodes[index].is_held());
         self.start_rows = ContactRows { nodes: rows.nodes.into_iter().filter(|node| !node.is_held()).collect() };
+        let area: f64 = self.start_rows.areas().iter().sum();
+        let extent = smallest_extent(&self.start_positions()[0]);
+        let valid = self.start_rows.nodes.is_empty() || area > SMALLEST_AREA * extent * extent;
+        let allowed = "\"surface\" for a face that x3 runs along, whose projection has no area";
+        SceneError::require(valid, "contact.area", "projected", allowed)?;
         let allowed = "a face with nodes that supports do not hold along their normals";
         SceneError::require(!self.boundary.points.is_empty(), "contact.face", &self.scene.contact.face, allowed)
     }
@@ -265,7 +272,7 @@ fn bodies(scene: &Scene) -> Result<(Vec<Body>, Option<u32>), SceneError> {
 fn block_bodies(scene: &Scene, blocks: &Blocks) -> Result<(Vec<Body>, Option<u32>), SceneError> {
     let grid = blocks.grid();
     let body = |name: &str, body, mesh: Mesh, contact: &str| {
-        let contact: Vec<CellFace> = mesh.faces()[contact].clone();
+        let contact = find_face("contact.face", contact, &mesh)?.to_vec();
         Body::new(name, body, Arc::new(mesh), &contact, 1)
     };
     let height = scene.heights().map_or(1.0, |heights| heights.start_height);

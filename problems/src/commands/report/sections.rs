@@ -20,10 +20,7 @@ pub fn found_label(report: &Report) -> &'static str {
 pub fn export_command(folder: &Path) -> String {
     let path = |path: &Path| quoted(path.display().to_string());
     let (scene, run) = (path(&folder.join(SCENE)), path(folder));
-    format!(
-        "contact3d {scene} export --run {run} --stl --step --csv --out {}",
-        quoted(format!("{}_export", folder.display()))
-    )
+    format!("contact3d {scene} export --run {run} --out {}", quoted(format!("{}_export", folder.display())))
 }
 
 /// The command, the scene and what it did not need.

@@ -285,7 +285,7 @@ impl Mesh {
 }
 
 /// The smallest side of the box around some points.
-pub(crate) fn smallest_extent(points: &[[f64; 3]]) -> f64 {
+pub fn smallest_extent(points: &[[f64; 3]]) -> f64 {
     let extent = |axis: usize| {
         let along = || points.iter().map(|point| point[axis]);
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)

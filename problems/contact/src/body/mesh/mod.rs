@@ -11,5 +11,5 @@ mod skin;
 pub use block::{BlockFace, block};
 pub use grid::Grid;
 pub use kind::CellKind;
-pub use mesh::{Cell, CellFace, Mesh, WHOLE};
-pub(crate) use mesh::{narrow, smallest_extent};
+pub(crate) use mesh::narrow;
+pub use mesh::{Cell, CellFace, Mesh, WHOLE, smallest_extent};
