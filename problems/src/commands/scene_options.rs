@@ -164,9 +164,11 @@ fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
 /// Refuses fields of blocks for a mesh.
 fn of_blocks(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
     match settings.first() {
-        Some(setting) if file.body.is_some() => {
-            Err(SceneError::out_of_range(setting.path(), "given for a mesh", "only for blocks; body.pieces divides a mesh"))
-        }
+        Some(setting) if file.body.is_some() => Err(SceneError::out_of_range(
+            setting.path(),
+            "given for a mesh",
+            "only for blocks; body.pieces divides a mesh",
+        )),
         _ => Ok(settings),
     }
 }

@@ -86,11 +86,6 @@ impl ContactGeometry {
         self.area == AreaKind::Projected
     }
 
-    /// Whether a row of a direction among the free ones may have a part along another one: not for normals along x₃.
-    pub fn mixes_directions(&self) -> bool {
-        self.normal == NormalKind::Surface
-    }
-
     /// Unit normal of the counter surface at the point nearest to a place, or straight above it; none where there is
     /// none.
     pub(crate) fn counter_normal(&self, x: [f64; 3]) -> Option<[f64; 3]> {

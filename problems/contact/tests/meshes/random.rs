@@ -188,8 +188,13 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Number of scenes: 24, or what MESH_SCENES says.
+fn count() -> u32 {
+    std::env::var("MESH_SCENES").map_or(24, |count| count.parse().expect("MESH_SCENES is a number"))
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: count(), ..ProptestConfig::default() })]
 
     #[test]
     fn both_paths_satisfy_the_equations(case in cases()) {
