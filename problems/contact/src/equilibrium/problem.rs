@@ -71,7 +71,11 @@ impl ContactProblem {
     /// Leaves out contact nodes whose normals supports hold at the start.
     fn leave_out_held_nodes(&mut self) -> Result<(), SceneError> {
         let refused = |error: ContactError| {
-            SceneError::out_of_range("counter_surface", error, "a surface with a normal at every contact node")
+            SceneError::out_of_range(
+                "counter_surface",
+                error,
+                "a surface with a normal at every contact node; contact.normal = \"x3\" asks for none",
+            )
         };
         let rows = self.rows(&self.start_positions()).map_err(refused)?;
         self.boundary.retain(|index| !rows.nodes[index].is_held());
