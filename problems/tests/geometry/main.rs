@@ -3,4 +3,5 @@
 mod block_as_mesh;
 mod lug_nose;
 mod published;
+mod refusals;
 mod scenes;
