@@ -206,7 +206,7 @@ impl ContactScene {
         };
         crate::convert::json(&serde_json::json!({
             "max_evaluations": optimizer.max_evaluations,
-            "tolerance": optimizer.tolerance,
+            "tolerance": self.case.tolerance,
             "max_seconds": optimizer.time_limit,
             "first_step": optimizer.first_step,
             "bundle_size": optimizer.bundle_size,

@@ -24,6 +24,11 @@ use std::sync::Arc;
 /// Degree of the paper's B-splines.
 const DEFAULT_DEGREE: usize = 3;
 
+/// The tolerance of an optimization with some limits.
+fn usual_tolerance(limits: &[Limit]) -> f64 {
+    if limits.iter().any(|limit| limit.quantity.is_of_shape()) { 1e-5 } else { 1e-7 }
+}
+
 /// A scene and how it is to be solved and optimized.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
@@ -45,6 +50,8 @@ pub struct Case {
     pub clusters: Option<usize>,
     /// Settings of the optimizer.
     pub optimizer: OptimizerSection,
+    /// Predicted decrease, relative to the objective, at which an optimization ends.
+    pub tolerance: f64,
     /// Outputs.
     pub output: OutputSection,
     /// What is to be said of the files of the scene before any work.
@@ -84,6 +91,7 @@ impl Case {
             wanted.at(&blocks.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
         let limits = limits(&file.limit, &objective, scene.heights().is_none())?;
+        let tolerance = file.optimizer.tolerance.unwrap_or_else(|| usual_tolerance(&limits));
         let method = method(&objective, file.optimizer.method)?;
         check_accuracy(&objective, file.optimizer.accuracy)?;
         Ok(Self {
@@ -96,6 +104,7 @@ impl Case {
             preconditioner: file.solver.preconditioner,
             clusters: file.solver.clusters,
             optimizer: file.optimizer.clone(),
+            tolerance,
             output: file.output.clone(),
             notes,
         })

@@ -52,9 +52,11 @@ pub struct OptimizerSection {
     /// Largest number of evaluations of objective and subgradient, on every mesh.
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub max_evaluations: usize,
-    /// Predicted decrease, relative to the objective, at which the run ends.
+    /// Predicted decrease, relative to the objective, at which the run ends. Default 1e-7, or 1e-5 beside a limit of the
+    /// volume: along its curved constraint the last digits take many steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
-    pub tolerance: f64,
+    pub tolerance: Option<f64>,
     /// Longest time of one run; the evaluation under way is finished. Default no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "s", "exclusiveMinimum" = 0.0))]
@@ -87,7 +89,7 @@ impl Default for OptimizerSection {
         Self {
             method: None,
             max_evaluations: 150,
-            tolerance: 1e-7,
+            tolerance: None,
             time_limit: None,
             first_step: None,
             bundle_size: None,

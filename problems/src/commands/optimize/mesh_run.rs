@@ -69,7 +69,7 @@ pub fn run_on_mesh(
     };
     let config = BundleTrustConfig {
         max_evaluations: optimizer.max_evaluations,
-        tolerance: optimizer.tolerance,
+        tolerance: stage.case.tolerance,
         max_seconds: time_limit,
         first_step: Some(first_step),
         bundle_size: optimizer.bundle_size,
