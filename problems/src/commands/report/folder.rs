@@ -130,10 +130,10 @@ impl<'a> ReportFolder<'a> {
         figures
             .extend(bodies::von_mises(objective, shapes).into_iter().map(|figure| (figure, stress, captions::STRESS)));
         figures.extend([
-            (bodies::surfaces(objective, shapes), "heights of the contact surface in space", captions::SURFACE),
+            (bodies::surfaces(objective, shapes), "the shape of the contact surface in space", captions::SURFACE),
             (
                 bodies::surface_map(objective, shapes),
-                "heights of the contact surface from above",
+                "the shape of the contact surface from above",
                 captions::SURFACE_MAP,
             ),
         ]);
