@@ -52,8 +52,8 @@ pub struct OptimizerSection {
     /// Largest number of evaluations of objective and subgradient, on every mesh.
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub max_evaluations: usize,
-    /// Predicted decrease, relative to the objective, at which the run ends. Default 1e-7, or 1e-5 beside a limit of the
-    /// volume: along its curved constraint the last digits take many steps.
+    /// Predicted decrease, relative to the objective, at which the run ends. Default 1e-7, or 1e-5 beside a limit of
+    /// the volume: along its curved constraint the last digits take many steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
     pub tolerance: Option<f64>,

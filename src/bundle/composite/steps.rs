@@ -74,8 +74,8 @@ impl Steps {
     }
 
     /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights
-    /// of the solution. Beside smooth constraints, it is added at once, with theirs: along a curved constraint every step
-    /// meets it.
+    /// of the solution. Beside smooth constraints, it is added at once, with theirs: along a curved constraint every
+    /// step meets it.
     fn solve(
         &mut self,
         at: &mut Position<'_>,
