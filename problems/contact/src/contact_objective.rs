@@ -1,4 +1,4 @@
-//! The objective Θ of a contact problem: a measure of the states of control heights, and its first step.
+//! The objective Θ of a contact problem: a measure of the states of a shape, and its first step.
 
 use crate::body::mesh::smallest_extent;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
@@ -78,17 +78,14 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// # Errors
     /// As [`ContactCost::new`]; [`SceneError::OutOfRange`] for bounds of the volume that are not finite and > 0.
     pub fn new(shape: ContactShape<S>, measure: Measure, limits: &[Limit]) -> Result<Self, SceneError> {
-        let volume = VolumeLimits::new(limits, shape.problem())?;
-        // The optimizer has the constraints of the pressures first, then those of the shape.
-        let (mut limits, of_shape): (Vec<Limit>, Vec<Limit>) =
-            limits.iter().partition(|limit| !limit.quantity.is_of_shape());
+        let limits = Limit::in_order(limits);
+        let volume = VolumeLimits::new(&limits, shape.problem())?;
         let measured = match ContactCost::new(measure, &limits, shape.problem())? {
             ContactCost::Pressure(cost) => {
                 Measured::Pressure(CompositeObjective::new(shape.with_outputs(cost.outputs()), cost))
             }
             ContactCost::Field(cost) => Measured::Field(ReducedObjective::new(shape.with_displacements(), cost)),
         };
-        limits.extend(of_shape);
         let kinds = limits.iter().map(Limit::kind).collect();
         Ok(Self { measured, limits, volume, kinds })
     }

@@ -9,7 +9,7 @@ use crate::{
     SplineName, StartSection, SurfaceSection, UpperSection,
 };
 use contact::body::load_size;
-use contact::body::mesh::Mesh;
+use contact::body::mesh::{Mesh, bounding_box};
 use contact::cost::{Limit, Measure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
@@ -221,11 +221,8 @@ const USUAL_STRAIN: f64 = 0.05;
 
 /// Signs of a mesh in another unit than the scene says: an unusual extent, and loads that strain the body too much.
 fn doubts_of_unit(mesh: &Mesh, body: &BodyScene) -> Result<Vec<String>, SceneError> {
-    let extent = |axis: usize| {
-        let along = || mesh.nodes().iter().map(|x| x[axis]);
-        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
-    };
-    let mut extents = [extent(0), extent(1), extent(2)];
+    let [least, most] = bounding_box(mesh.nodes());
+    let mut extents = [0, 1, 2].map(|axis| most[axis] - least[axis]);
     extents.sort_by(f64::total_cmp);
     let mut doubts = Vec::new();
     if extents[2] < USUAL_EXTENTS[0] || extents[2] > USUAL_EXTENTS[1] {

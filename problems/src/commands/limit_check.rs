@@ -47,11 +47,9 @@ impl LimitCheck {
         limits: &[Limit],
         problem: &ContactProblem,
     ) -> Result<Option<Vec<Self>>, SceneError> {
-        let (mut ordered, of_shape): (Vec<Limit>, Vec<Limit>) =
-            limits.iter().partition(|limit| !limit.quantity.is_of_shape());
-        let shape = VolumeLimits::new(&of_shape, problem)?.constraints(problem, &certificate.point);
-        let first = ordered.len();
-        ordered.extend(of_shape);
+        let ordered = Limit::in_order(limits);
+        let shape = VolumeLimits::new(&ordered, problem)?.constraints(problem, &certificate.point);
+        let first = ordered.len() - shape.len();
         let kinds: Vec<ConstraintKind> = ordered.iter().map(Limit::kind).collect();
         let Some(proof) = certificate.constraints.as_ref().filter(|proof| proof.kinds == kinds) else {
             return Ok(None);

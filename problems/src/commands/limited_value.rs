@@ -2,7 +2,7 @@
 
 use crate::commands::facts::Value;
 use crate::commands::numbers::{number, raised};
-use contact::cost::{Limit, LimitSide};
+use contact::cost::Limit;
 use serde_json::{Map, json};
 
 /// A limit with its quantity at a shape.
@@ -23,11 +23,7 @@ impl LimitedValue {
     /// The limit in words: `peak-pressure at most 3400 MPa`.
     pub fn words(&self) -> String {
         let Limit { quantity, side, bound } = self.limit;
-        let side = match side {
-            LimitSide::AtMost => "at most",
-            LimitSide::AtLeast => "at least",
-            LimitSide::Equal => "equal to",
-        };
+        let side = side.name().replace('_', " ");
         format!("{} {side} {} {}", quantity.name(), number(bound), raised(quantity.unit())).trim_end().to_owned()
     }
 
@@ -43,11 +39,6 @@ impl LimitedValue {
     /// The keys of the limit in JSON.
     pub fn keys(&self) -> Map<String, serde_json::Value> {
         let Limit { quantity, side, bound } = self.limit;
-        let side = match side {
-            LimitSide::AtMost => "at_most",
-            LimitSide::AtLeast => "at_least",
-            LimitSide::Equal => "equal_to",
-        };
-        Map::from_iter([("quantity".to_owned(), json!(quantity.name())), (side.to_owned(), json!(bound))])
+        Map::from_iter([("quantity".to_owned(), json!(quantity.name())), (side.name().to_owned(), json!(bound))])
     }
 }

@@ -238,7 +238,8 @@ impl Proposer for Composite {
     fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
         let Some(outer) = at.outer else { return };
         if let Some(known) = trial.linearization {
-            self.steps.remember(outer, &trial.proposal.trial, (known, trial.constraints));
+            let curved = at.state.constraints.as_ref().is_some_and(|found| found.are_smooth());
+            self.steps.remember(outer, &trial.proposal.trial, (known, trial.constraints), curved);
         }
         if self.escape.is_some() {
             return;
@@ -291,8 +292,10 @@ impl Proposer for Composite {
         // The center evaluated anew has outdated the proof.
         self.escape = None;
         if let (Some(outer), Some(known)) = (at.outer, linearization) {
-            let constraints = at.state.constraints.as_ref().map(|constraints| constraints.center_evaluation());
-            self.steps.remember(outer, &at.state.center, (known, constraints));
+            let constraints = at.state.constraints.as_ref();
+            let curved = constraints.is_some_and(|found| found.are_smooth());
+            let found = constraints.map(|constraints| constraints.center_evaluation());
+            self.steps.remember(outer, &at.state.center, (known, found), curved);
         }
         self.rebase(at, linearization);
     }

@@ -10,7 +10,7 @@ use crate::bundle::proposers::proposer::Position;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
-use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Polyhedron, Vector};
+use crate::{ConstraintEvaluation, Matrix, Polyhedron, Vector};
 use std::rc::Rc;
 
 /// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h
@@ -58,17 +58,18 @@ impl Steps {
         }
     }
 
-    /// Remembers a Jacobian, unless h has a curvature of its own and nothing else is curved: the model then uses no
-    /// curvature of the outputs.
+    /// Remembers a Jacobian, unless h has a curvature of its own and no smooth constraints are `curved`: the model then
+    /// uses no curvature of the outputs.
     pub(super) fn remember(
         &mut self,
         outer: &dyn OuterFunction,
         point: &Vector,
         (known, constraints): (&Linearization, Option<&ConstraintEvaluation>),
+        curved: bool,
     ) {
         let Linearization { outputs, jacobian, .. } = known;
         let own = || without_panic(|| outer.curvature(outputs, jacobian).is_some()).unwrap_or(true);
-        if constraints.is_some() || !own() {
+        if curved || !own() {
             self.memory.remember(point, &stacked(jacobian, constraints.map(|found| &found.jacobian)));
         }
     }
@@ -97,7 +98,7 @@ impl Steps {
             origin: changes.origin,
         };
         let constraints = at.state.constraints.as_ref();
-        let curved = constraints.is_some_and(|found| !found.kinds().contains(&ConstraintKind::Nonsmooth));
+        let curved = constraints.is_some_and(|found| found.are_smooth());
         if !curved && (!self.needs_curvature || outer.curvature(outputs, jacobian).is_some()) {
             return model.solve(at.solver);
         }

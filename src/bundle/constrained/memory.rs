@@ -234,6 +234,11 @@ impl Constraints {
         self.revision
     }
 
+    /// Whether all constraints are smooth: their Jacobians at other points then tell their curvature.
+    pub(crate) fn are_smooth(&self) -> bool {
+        !self.kinds.contains(&ConstraintKind::Nonsmooth)
+    }
+
     /// What the constraints ask for.
     pub(crate) fn kinds(&self) -> &[ConstraintKind] {
         &self.kinds

@@ -42,6 +42,17 @@ pub struct Limit {
 /// steps that do nothing but remove the rest would cost a state each.
 const ALLOWANCE: f64 = 1e-8;
 
+impl LimitSide {
+    /// Its name in JSON, and in words with spaces.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AtMost => "at_most",
+            Self::AtLeast => "at_least",
+            Self::Equal => "equal_to",
+        }
+    }
+}
+
 impl LimitedQuantity {
     /// Its name in scene files and reports.
     pub fn name(self) -> &'static str {
@@ -68,6 +79,13 @@ impl LimitedQuantity {
 }
 
 impl Limit {
+    /// Limits in the order of the constraints of the optimizer: those of the contact state, then those of the shape.
+    pub fn in_order(limits: &[Self]) -> Vec<Self> {
+        let mut limits = limits.to_vec();
+        limits.sort_by_key(|limit| limit.quantity.is_of_shape());
+        limits
+    }
+
     /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-8 of the bound.
     pub fn excess(&self, value: f64) -> f64 {
         let excess = match self.side {

@@ -89,12 +89,6 @@ impl PressureCost {
         SceneError::require(limit > 0.0 && limit.is_finite(), "limit.at_most", limit, "a finite number > 0 (MPa)")?;
         Ok(Self { peak_limit: Some(limit), ..self })
     }
-
-    /// The limit of the largest pressure, MPa, if there is one.
-    pub fn peak_limit(&self) -> Option<f64> {
-        self.peak_limit
-    }
-
     /// The cost in a form that can be computed for the pressures of a problem: where a pressure norm may leave the
     /// range of doubles, its root in MPa, which has the same minimisers. The choice depends on neither mesh nor shape.
     #[must_use]

@@ -9,6 +9,7 @@
 //! these do not move in the held directions.
 
 use crate::body::Body;
+use crate::body::mesh::bounding_box;
 use crate::error::SceneError;
 use crate::names::{find_face, nodes_of};
 use crate::shape::ShapeMap;
@@ -232,7 +233,7 @@ impl LatticeShape {
             rows.extend(row);
         }
         if moved == 0 {
-            let (least, most) = extent(mesh.nodes());
+            let [least, most] = bounding_box(mesh.nodes());
             let allowed = format!("a box around nodes that may move; the body lies between {least:?} and {most:?} mm");
             return Err(SceneError::out_of_range("lattice", "a box without such nodes", allowed));
         }
@@ -374,14 +375,6 @@ impl LatticeShape {
         };
         self.controls().iter().map(name).collect()
     }
-}
-
-/// Least and largest coordinates of some points.
-fn extent(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    points.iter().fold(start, |(least, most), x| {
-        (std::array::from_fn(|k| least[k].min(x[k])), std::array::from_fn(|k| most[k].max(x[k])))
-    })
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

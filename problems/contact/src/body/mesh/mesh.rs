@@ -284,13 +284,17 @@ impl Mesh {
     }
 }
 
-/// The smallest side of the box around some points.
+/// Least and largest coordinates of some points, mm.
+pub fn bounding_box(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    points.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[least, most], x| {
+        [std::array::from_fn(|axis| least[axis].min(x[axis])), std::array::from_fn(|axis| most[axis].max(x[axis]))]
+    })
+}
+
+/// The smallest side of the box around some points, mm.
 pub fn smallest_extent(points: &[[f64; 3]]) -> f64 {
-    let extent = |axis: usize| {
-        let along = || points.iter().map(|point| point[axis]);
-        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
-    };
-    extent(0).min(extent(1)).min(extent(2))
+    let [least, most] = bounding_box(points);
+    (0..3).map(|axis| most[axis] - least[axis]).fold(f64::INFINITY, f64::min)
 }
 
 /// Indices of meshes have 32 bits.

@@ -12,4 +12,4 @@ pub use block::{BlockFace, block};
 pub use grid::Grid;
 pub use kind::CellKind;
 pub(crate) use mesh::narrow;
-pub use mesh::{Cell, CellFace, Mesh, WHOLE, smallest_extent};
+pub use mesh::{Cell, CellFace, Mesh, WHOLE, bounding_box, smallest_extent};

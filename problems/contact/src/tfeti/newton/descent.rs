@@ -32,8 +32,8 @@ const IMAGE_REPLACEMENT: f64 = 1e-4;
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
 /// Half as many show that the jumps must weigh less.
 const MAX_STALLED_PRODUCTS: usize = 10;
-/// Limit like [`MAX_STALLED_PRODUCTS`] for nearly incompressible bodies and for flat or tall bricks: pressures, or
-/// bending, that the preconditioner does not know take products of their own.
+/// Limit like [`MAX_STALLED_PRODUCTS`] for nearly incompressible bodies, for flat or tall bricks, and where jumps weigh
+/// less: pressures, bending or gluing that the preconditioner hardly knows take products of their own.
 const MAX_STALLED_SLOW: usize = 20;
 
 impl TornContact<'_> {
