@@ -131,17 +131,22 @@ fn mean<T>(points: &[Placed<T>]) -> [f64; 3] {
     std::array::from_fn(|axis| points.iter().map(|(point, _)| point[axis]).sum::<f64>() / count)
 }
 
-/// Divides points into so many groups by halving them across their longest extent.
+/// Divides points into so many groups across their longest extent, again and again: into halves, or, where the groups
+/// are equal, into as many parts as the smallest factor of their number, so that boxes of points are divided into boxes.
 fn divide<T>(mut points: Vec<Placed<T>>, count: usize, groups: &mut Vec<Vec<Placed<T>>>) {
     if count <= 1 {
         return groups.push(points);
     }
     let axis = longest_axis(points.iter().map(|(point, _)| *point));
     points.sort_by(|(a, _), (b, _)| a[axis].total_cmp(&b[axis]));
-    let left = count / 2;
-    let second = points.split_off(points.len() * left / count);
-    divide(points, left, groups);
-    divide(second, count - left, groups);
+    let size = points.len();
+    let are_equal = size > count && size.is_multiple_of(count);
+    let parts = (2..=count).find(|factor| are_equal && count.is_multiple_of(*factor)).unwrap_or(2);
+    let before = |part: usize| count * part / parts;
+    for part in (0..parts).map(|part| before(part)..before(part + 1)) {
+        let rest = points.split_off(points.len() * part.len() / (count - part.start));
+        divide(std::mem::replace(&mut points, rest), part.len(), groups);
+    }
 }
 
 #[cfg(test)]
@@ -162,5 +167,18 @@ mod tests {
             groups.iter().map(length).fold(0.0, f64::max)
         };
         assert!(extent(0) <= 2.0 && extent(1) <= 1.0, "{groups:?}");
+    }
+
+    #[test]
+    fn a_box_of_points_is_divided_into_equal_boxes() {
+        let points: Vec<Placed<usize>> =
+            (0..216).map(|i| ([(i % 6) as f64, (i / 6 % 6) as f64, (i / 36) as f64], i)).collect();
+        let mut groups = Vec::new();
+        divide(points, 27, &mut groups);
+        assert_eq!(groups.len(), 27);
+        for group in groups {
+            let first = group[0].0.map(|x| (x / 2.0).floor());
+            assert!(group.len() == 8 && group.iter().all(|(x, _)| x.map(|x| (x / 2.0).floor()) == first), "{group:?}");
+        }
     }
 }
