@@ -50,7 +50,7 @@ pub struct ScalingArguments {
     #[arg(long, value_name = "N", value_parser = positive, requires = "model")]
     pub products: Option<f64>,
     /// Products with clusters over those without, in the model.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.9, value_parser = positive, requires = "model", conflicts_with = "case")]
+    #[arg(long, value_name = "FACTOR", default_value_t = 2.3, value_parser = positive, requires = "model", conflicts_with = "case")]
     pub cluster_products: f64,
 }
 
