@@ -1,7 +1,7 @@
-//! The engine consists of parts: a type whose methods call each other across many files is none. A method of a type
-//! that calls a method of the same type in another file is an arrow between these files; in `src/bundle` no circle of
-//! arrows is allowed, and no type with methods in more than three files. Traits do not count: they are the interfaces
-//! between parts.
+//! Engine and mechanics consist of parts: a type whose methods call each other across many files is none. A method of a
+//! type that calls a method of the same type in another file is an arrow between these files; in `src/bundle` and in
+//! the contact problem no circle of arrows is allowed, and no type with methods in more than three files. Traits do
+//! not count: they are the interfaces between parts.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -90,10 +90,10 @@ fn reaches<'a>(arrows: &BTreeMap<&'a PathBuf, BTreeSet<&'a PathBuf>>, from: &'a 
     false
 }
 
-#[test]
-fn types_of_the_engine_are_parts() {
-    let methods = methods(Path::new("src/bundle"));
-    assert!(methods.contains_key("Run") && methods.len() > 20, "{} types", methods.len());
+/// Checks the types of a folder, among them one of a name.
+fn check(folder: &str, known: &str) {
+    let methods = methods(Path::new(folder));
+    assert!(methods.contains_key(known) && methods.len() > 20, "{} types", methods.len());
     for (name, files) in &methods {
         assert!(files.len() <= MAX_FILES, "{name} has methods in {:?}", files.keys());
         let arrows = arrows(files);
@@ -105,6 +105,16 @@ fn types_of_the_engine_are_parts() {
             );
         }
     }
+}
+
+#[test]
+fn types_of_the_engine_are_parts() {
+    check("src/bundle", "Run");
+}
+
+#[test]
+fn types_of_the_mechanics_are_parts() {
+    check("problems/contact/src", "TornContact");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A body of a scene: its mesh with materials, supports, loads and tied nodes. What does not depend on the shape.
 
 use crate::body::loaded::Loaded;
-use crate::body::mesh::{CellFace, Mesh};
+use crate::body::mesh::{CellFace, Mesh, narrow};
 use crate::body::support::{Directions, held_directions};
 use crate::body::{Patterns, Piece, Solid};
 use crate::error::SceneError;
@@ -53,7 +53,7 @@ impl Body {
         };
         let piece_of = body.mesh.pieces().map_or_else(|| body.mesh.partitioned(piece_count), <[u32]>::to_vec);
         let mut known = Patterns::default();
-        let cells = body.mesh.cells_by_piece(&piece_of);
+        let cells = cells_by_piece(&piece_of);
         body.pieces = cells.into_iter().map(|cells| Piece::new(&body.solid, cells, &mut known)).collect();
         Ok(body)
     }
@@ -93,4 +93,12 @@ impl Body {
     pub fn extended(&self, whole: &Piece, values: &[f64]) -> Vec<[f64; 3]> {
         (0..self.mesh.node_count() as u32).map(|node| whole.value_at(&self.solid, node, values)).collect()
     }
+}
+
+/// The cells of every piece.
+fn cells_by_piece(piece_of: &[u32]) -> Vec<Vec<u32>> {
+    let count = piece_of.iter().copied().max().map_or(0, |last| last as usize + 1);
+    let mut cells = vec![Vec::new(); count];
+    piece_of.iter().enumerate().for_each(|(cell, &piece)| cells[piece as usize].push(narrow(cell)));
+    cells
 }

@@ -5,7 +5,7 @@
 
 use crate::body::elasticity::Material;
 use crate::body::elasticity::packed::lower_start;
-use crate::body::mesh::{Mesh, narrow};
+use crate::body::mesh::narrow;
 use crate::body::{Place, Solid};
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
@@ -300,14 +300,4 @@ fn fixing_nodes(points: &[[f64; 3]]) -> [usize; 3] {
     let along = difference(points[second], points[first]);
     let third = farthest(&|point| square(cross(along, difference(point, points[first]))));
     [first, second, third]
-}
-
-impl Mesh {
-    /// The cells of every piece.
-    pub(crate) fn cells_by_piece(&self, piece_of: &[u32]) -> Vec<Vec<u32>> {
-        let count = piece_of.iter().copied().max().map_or(0, |last| last as usize + 1);
-        let mut cells = vec![Vec::new(); count];
-        piece_of.iter().enumerate().for_each(|(cell, &piece)| cells[piece as usize].push(narrow(cell)));
-        cells
-    }
 }

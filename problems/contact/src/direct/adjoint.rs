@@ -11,6 +11,7 @@
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::newton::SPRINGS;
+use crate::direct::newton::active_system;
 use crate::equilibrium::law::{Friction, Linearization};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::add_scaled;
@@ -26,71 +27,69 @@ pub(super) struct CondensedAdjoint {
     pub(super) error_terms: Vec<f64>,
 }
 
-impl CompliantContact {
-    /// The adjoint at a state for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies; no loads if J does not depend on u.
-    pub(super) fn adjoint(
-        &self,
-        unknowns: &[f64],
-        linearizations: &[Linearization],
-        direction: &[f64],
-        loads: &[CondensedLoad],
-    ) -> CondensedAdjoint {
-        let (direction, resultant) = self.condensed_dual(direction, loads);
-        let boundary = &self.problem.boundary;
-        let (count, motions) = (self.row_count(), self.resultant.len());
-        let active = self.active_system(linearizations, 0.0, Friction::Coulomb);
-        let size = active.rows.len();
-        let matrix = active.matrix.transpose().to_owned();
-        let mut sprung = matrix.clone();
-        for motion in size..size + motions {
-            sprung[(motion, motion)] = SPRINGS[0];
-        }
-        let mut solution: Vec<f64> = active.rows.iter().map(|&row| direction[row] * self.load).collect();
-        solution.extend(resultant);
-        DenseLu::new(&sprung).solve_refined(&matrix, &mut solution);
-        let mut psi = vec![0.0; count + motions];
-        for (&row, value) in active.rows.iter().zip(&solution) {
-            psi[row] = *value;
-        }
-        psi[count..].copy_from_slice(&solution[size..]);
-        let mut eta = vec![0.0; count];
-        for (node, linearization) in boundary.points.iter().zip(linearizations) {
-            let block = linearization.derivative(node.row_count(), node.friction);
-            for (i, coefficients) in block.iter().enumerate().take(node.row_count()) {
-                for (j, d) in coefficients.iter().enumerate().take(node.row_count()) {
-                    eta[node.start + j] -= d * psi[node.start + i];
-                }
-            }
-        }
-        let (product, rigid) = (multiply(&self.compliance, &eta), multiply(&self.motions, &psi[count..]));
-        for (node, _) in boundary.points.iter().zip(linearizations).filter(|(_, l)| **l == Linearization::Open) {
-            for row in node.rows() {
-                psi[row] = direction[row] * self.load + product[row] - rigid[row];
-            }
-        }
-        let (residual, _) = self.residual(unknowns, 0.0);
-        let error_terms = psi.iter().zip(&residual).map(|(psi, residual)| psi * residual).collect();
-        eta.iter_mut().for_each(|eta| *eta /= self.unit * self.load);
-        let own = self.own_amplitudes(&psi[count..], 1.0 / self.load);
-        let mut displacements: Vec<Vec<f64>> =
-            self.bodies.iter().zip(&own).map(|(body, own)| body.displacement(&eta, own, false)).collect();
-        for (displacement, load) in displacements.iter_mut().zip(loads) {
-            add_scaled(displacement, 1.0, &load.response);
-        }
-        CondensedAdjoint { displacements, multipliers: eta, error_terms }
+/// The adjoint at a state for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies; no loads if J does not depend on u.
+pub(super) fn adjoint(
+    contact: &CompliantContact,
+    unknowns: &[f64],
+    linearizations: &[Linearization],
+    direction: &[f64],
+    loads: &[CondensedLoad],
+) -> CondensedAdjoint {
+    let (direction, resultant) = condensed_dual(contact, direction, loads);
+    let boundary = &contact.problem.boundary;
+    let (count, motions) = (contact.row_count(), contact.resultant.len());
+    let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);
+    let size = active.rows.len();
+    let matrix = active.matrix.transpose().to_owned();
+    let mut sprung = matrix.clone();
+    for motion in size..size + motions {
+        sprung[(motion, motion)] = SPRINGS[0];
     }
+    let mut solution: Vec<f64> = active.rows.iter().map(|&row| direction[row] * contact.load).collect();
+    solution.extend(resultant);
+    DenseLu::new(&sprung).solve_refined(&matrix, &mut solution);
+    let mut psi = vec![0.0; count + motions];
+    for (&row, value) in active.rows.iter().zip(&solution) {
+        psi[row] = *value;
+    }
+    psi[count..].copy_from_slice(&solution[size..]);
+    let mut eta = vec![0.0; count];
+    for (node, linearization) in boundary.points.iter().zip(linearizations) {
+        let block = linearization.derivative(node.row_count(), node.friction);
+        for (i, coefficients) in block.iter().enumerate().take(node.row_count()) {
+            for (j, d) in coefficients.iter().enumerate().take(node.row_count()) {
+                eta[node.start + j] -= d * psi[node.start + i];
+            }
+        }
+    }
+    let (product, rigid) = (multiply(&contact.compliance, &eta), multiply(&contact.motions, &psi[count..]));
+    for (node, _) in boundary.points.iter().zip(linearizations).filter(|(_, l)| **l == Linearization::Open) {
+        for row in node.rows() {
+            psi[row] = direction[row] * contact.load + product[row] - rigid[row];
+        }
+    }
+    let (residual, _) = contact.residual(unknowns, 0.0);
+    let error_terms = psi.iter().zip(&residual).map(|(psi, residual)| psi * residual).collect();
+    eta.iter_mut().for_each(|eta| *eta /= contact.unit * contact.load);
+    let own = contact.own_amplitudes(&psi[count..], 1.0 / contact.load);
+    let mut displacements: Vec<Vec<f64>> =
+        contact.bodies.iter().zip(&own).map(|(body, own)| body.displacement(&eta, own, false)).collect();
+    for (displacement, load) in displacements.iter_mut().zip(loads) {
+        add_scaled(displacement, 1.0, &load.response);
+    }
+    CondensedAdjoint { displacements, multipliers: eta, error_terms }
+}
 
-    /// ∂J/∂λ with the displacements eliminated, packed, unit of J per N, and ∂J/∂a, dimensionless amplitudes.
-    fn condensed_dual(&self, direction: &[f64], loads: &[CondensedLoad]) -> (Vec<f64>, Vec<f64>) {
-        let mut dual = direction.to_vec();
-        if loads.is_empty() {
-            return (dual, vec![0.0; self.resultant.len()]);
-        }
-        for (body, load) in self.bodies.iter().zip(loads) {
-            body.rows.add_jumps(&load.response, -1.0, &mut dual);
-        }
-        let own = loads.iter().flat_map(|load| &load.resultants).map(|resultant| resultant * self.unit * self.load);
-        let own: Vec<f64> = own.collect();
-        (dual, self.resultants_of(&DVector::from_vec(own)))
+/// ∂J/∂λ with the displacements eliminated, packed, unit of J per N, and ∂J/∂a, dimensionless amplitudes.
+fn condensed_dual(contact: &CompliantContact, direction: &[f64], loads: &[CondensedLoad]) -> (Vec<f64>, Vec<f64>) {
+    let mut dual = direction.to_vec();
+    if loads.is_empty() {
+        return (dual, vec![0.0; contact.resultant.len()]);
     }
+    for (body, load) in contact.bodies.iter().zip(loads) {
+        body.rows.add_jumps(&load.response, -1.0, &mut dual);
+    }
+    let own = loads.iter().flat_map(|load| &load.resultants).map(|resultant| resultant * contact.unit * contact.load);
+    let own: Vec<f64> = own.collect();
+    (dual, contact.resultants_of(&DVector::from_vec(own)))
 }

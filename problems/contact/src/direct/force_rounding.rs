@@ -10,26 +10,29 @@
 //! equilibrium alone determines the forces, since condensed loads keep the resultants of the loads; Δλ shows it.
 
 use crate::direct::compliant_contact::CompliantContact;
+use crate::direct::newton::exact_step;
 use crate::equilibrium::law::Linearization;
 use crate::linear::vector::norm;
 
-impl CompliantContact {
-    /// |Δλ| over the load where the contact dofs of the bodies move by δ, mm; not finite where δ is not.
-    pub(super) fn change_of_forces(&self, linearizations: &[Linearization], delta: &[Vec<f64>]) -> f64 {
-        let mut moved = vec![0.0; self.row_count()];
-        for (body, delta) in self.bodies.iter().zip(delta) {
-            body.rows.add_jumps(delta, 1.0 / (self.unit * self.load), &mut moved);
-        }
-        let boundary = &self.problem.boundary;
-        let mut residual = vec![0.0; self.row_count() + self.resultant.len()];
-        for (node, linearization) in boundary.points.iter().zip(linearizations) {
-            let count = node.row_count();
-            let block = linearization.derivative(count, node.friction);
-            for (row, coefficients) in block.iter().enumerate().take(count) {
-                let terms = coefficients[..count].iter().zip(&moved[node.start..]);
-                residual[node.start + row] = -terms.map(|(d, moved)| d * moved).sum::<f64>();
-            }
-        }
-        norm(&self.exact_step(linearizations, &residual)[..self.row_count()])
+/// |Δλ| over the load where the contact dofs of the bodies move by δ, mm; not finite where δ is not.
+pub(super) fn change_of_forces(
+    contact: &CompliantContact,
+    linearizations: &[Linearization],
+    delta: &[Vec<f64>],
+) -> f64 {
+    let mut moved = vec![0.0; contact.row_count()];
+    for (body, delta) in contact.bodies.iter().zip(delta) {
+        body.rows.add_jumps(delta, 1.0 / (contact.unit * contact.load), &mut moved);
     }
+    let boundary = &contact.problem.boundary;
+    let mut residual = vec![0.0; contact.row_count() + contact.resultant.len()];
+    for (node, linearization) in boundary.points.iter().zip(linearizations) {
+        let count = node.row_count();
+        let block = linearization.derivative(count, node.friction);
+        for (row, coefficients) in block.iter().enumerate().take(count) {
+            let terms = coefficients[..count].iter().zip(&moved[node.start..]);
+            residual[node.start + row] = -terms.map(|(d, moved)| d * moved).sum::<f64>();
+        }
+    }
+    norm(&exact_step(contact, linearizations, &residual)[..contact.row_count()])
 }

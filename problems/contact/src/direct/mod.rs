@@ -10,6 +10,7 @@ mod compliant_body;
 mod compliant_contact;
 mod condensation;
 mod cone_programs;
+mod continuation;
 mod diagnosis;
 mod displacement_load;
 mod force_rounding;
@@ -23,5 +24,8 @@ mod tangents;
 
 pub use compliant_contact::CompliantContact;
 pub use condensation::CondensationPattern;
+pub use cone_programs::by_cone_programs;
+#[cfg(feature = "interior-point")]
+pub use resistance::resistance;
 pub use solver::DirectSolver;
 pub(crate) use solver::DirectState;

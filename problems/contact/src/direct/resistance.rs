@@ -64,61 +64,59 @@ struct Bound<'a> {
     constant: Vec<f64>,
 }
 
-impl CompliantContact {
-    /// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None
-    /// without friction or free motions, where free motions open the contact, for large problems, and without a bound.
-    ///
-    /// There is an equilibrium only if `resultant ≤ largest`.
-    pub fn resistance(&self) -> Option<Resistance> {
-        let bound = Bound::new(self)?;
-        let mut best: Option<Resistance> = None;
-        let mut share = 1.0;
-        for _program in 0..MAX_PROGRAMS {
-            let Some(found) = bound.at(share) else { break };
-            let new = found.largest / found.resultant;
-            let converged = new >= (1.0 - SMALLEST_DECREASE) * share;
-            if best.as_ref().is_none_or(|best| new < best.largest / best.resultant) {
-                best = Some(found);
-            }
-            if converged || new <= 0.0 {
-                break;
-            }
-            share = new;
+/// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None
+/// without friction or free motions, where free motions open the contact, for large problems, and without a bound.
+///
+/// There is an equilibrium only if `resultant ≤ largest`.
+pub fn resistance(contact: &CompliantContact) -> Option<Resistance> {
+    let bound = Bound::new(contact)?;
+    let mut best: Option<Resistance> = None;
+    let mut share = 1.0;
+    for _program in 0..MAX_PROGRAMS {
+        let Some(found) = bound.at(share) else { break };
+        let new = found.largest / found.resultant;
+        let converged = new >= (1.0 - SMALLEST_DECREASE) * share;
+        if best.as_ref().is_none_or(|best| new < best.largest / best.resultant) {
+            best = Some(found);
         }
-        best
-    }
-
-    /// The refusal that the bound proves, if it does.
-    pub(super) fn refusal(&self) -> Option<ContactError> {
-        let found = self.resistance().filter(|found| found.largest <= MAX_SHARE * found.resultant)?;
-        let Resistance { resultant, largest, .. } = found;
-        Some(ContactError::FrictionTooWeak { direction: self.in_words(&found.motion), resultant, largest })
-    }
-
-    /// The slip of every node in a motion.
-    fn slips(&self, motion: &[f64]) -> Vec<[f64; 3]> {
-        let jumps = multiply(&self.motions, motion);
-        let slip = |(point, node): (&ContactPoint, &NodeRows)| {
-            let parts = || node.directions[1..].iter().zip(&jumps[point.start + 1..]);
-            std::array::from_fn(|axis| parts().map(|(tangent, jump)| tangent[axis] * jump).sum())
-        };
-        self.problem.boundary.points.iter().zip(&self.rows.nodes).map(slip).collect()
-    }
-
-    /// The parts of a motion that make up most of its slip.
-    fn in_words(&self, motion: &[f64]) -> String {
-        let slips = self.slips(motion);
-        let count = slips.len() as f64;
-        let mean: [f64; 3] = std::array::from_fn(|axis| slips.iter().map(|slip| slip[axis]).sum::<f64>() / count);
-        let turning: f64 = slips.iter().map(|slip| square(std::array::from_fn(|axis| slip[axis] - mean[axis]))).sum();
-        let [x1, x2, x3] = mean.map(|part| part + 0.0);
-        let sliding = format!("sliding along ({x1:.2}, {x2:.2}, {x3:.2})");
-        let turning = (turning / count).sqrt() > 0.3;
-        match (square(mean).sqrt() > 0.3, turning) {
-            (true, true) => format!("{sliding} with turning on the contact surface"),
-            (true, false) => sliding,
-            _ => "turning on the contact surface".into(),
+        if converged || new <= 0.0 {
+            break;
         }
+        share = new;
+    }
+    best
+}
+
+/// The refusal that the bound proves, if it does.
+pub(super) fn refusal(contact: &CompliantContact) -> Option<ContactError> {
+    let found = resistance(contact).filter(|found| found.largest <= MAX_SHARE * found.resultant)?;
+    let Resistance { resultant, largest, .. } = found;
+    Some(ContactError::FrictionTooWeak { direction: in_words(contact, &found.motion), resultant, largest })
+}
+
+/// The slip of every node in a motion.
+fn slips(contact: &CompliantContact, motion: &[f64]) -> Vec<[f64; 3]> {
+    let jumps = multiply(&contact.motions, motion);
+    let slip = |(point, node): (&ContactPoint, &NodeRows)| {
+        let parts = || node.directions[1..].iter().zip(&jumps[point.start + 1..]);
+        std::array::from_fn(|axis| parts().map(|(tangent, jump)| tangent[axis] * jump).sum())
+    };
+    contact.problem.boundary.points.iter().zip(&contact.rows.nodes).map(slip).collect()
+}
+
+/// The parts of a motion that make up most of its slip.
+fn in_words(contact: &CompliantContact, motion: &[f64]) -> String {
+    let slips = slips(contact, motion);
+    let count = slips.len() as f64;
+    let mean: [f64; 3] = std::array::from_fn(|axis| slips.iter().map(|slip| slip[axis]).sum::<f64>() / count);
+    let turning: f64 = slips.iter().map(|slip| square(std::array::from_fn(|axis| slip[axis] - mean[axis]))).sum();
+    let [x1, x2, x3] = mean.map(|part| part + 0.0);
+    let sliding = format!("sliding along ({x1:.2}, {x2:.2}, {x3:.2})");
+    let turning = (turning / count).sqrt() > 0.3;
+    match (square(mean).sqrt() > 0.3, turning) {
+        (true, true) => format!("{sliding} with turning on the contact surface"),
+        (true, false) => sliding,
+        _ => "turning on the contact surface".into(),
     }
 }
 
@@ -184,7 +182,7 @@ impl<'a> Bound<'a> {
         self.factor.solve_upper_in_place(&mut h);
         let length = 2.0 * (missing(&v).max(0.0) + ROUNDING * sizes(&v));
         add_scaled(&mut v, length, &h);
-        let squares: f64 = contact.slips(motion).into_iter().map(square).sum();
+        let squares: f64 = slips(contact, motion).into_iter().map(square).sum();
         let slip = (squares / boundary.points.len() as f64).sqrt();
         let work = dot(&contact.resultant, motion);
         let pushed = work > LEAST_WORK * largest(motion);

@@ -36,8 +36,8 @@ impl DirectSolver {
             points.map(|point| RowSensitivities { gap: eta[point.start], ..RowSensitivities::default() }).collect();
         if !problem.geometry.is_fixed() {
             let lambda = &state.solution.forces;
-            let u = contact.contact_values(&state.contact_displacements());
-            let p = contact.contact_values(&adjoint.displacements);
+            let u = contact_values(contact, &state.contact_displacements());
+            let p = contact_values(contact, &adjoint.displacements);
             for (index, (own, point)) in rows.iter_mut().zip(&problem.boundary.points).enumerate() {
                 let of_row = |row: usize| {
                     std::array::from_fn(|axis| -(lambda[row] * p[index][axis] + eta[row] * u[index][axis]))
@@ -67,7 +67,7 @@ impl DirectSolver {
         let sizes = contact.bodies[1..].iter().map(|body| body.body.free.len());
         loads.extend(sizes.map(|size| Mat::zeros(size, velocities.count())));
         let turned = !problem.geometry.is_fixed();
-        let u = if turned { contact.contact_values(&state.contact_displacements()) } else { Vec::new() };
+        let u = if turned { contact_values(contact, &state.contact_displacements()) } else { Vec::new() };
         let mut approaches = Vec::with_capacity(changes.len());
         for (column, changes) in changes.iter().enumerate() {
             let mut approach = vec![0.0; problem.boundary.row_count];
@@ -80,47 +80,51 @@ impl DirectSolver {
             }
             approaches.push(approach);
             if turned {
-                contact.add_turned_forces(&state.solution.forces, changes, &mut loads, column);
+                add_turned_forces(contact, &state.solution.forces, changes, &mut loads, column);
             }
         }
         (loads, approaches)
     }
 }
 
-impl CompliantContact {
-    /// Σ_sides weight · (contact displacements of the bodies) at every contact node, along the axes.
-    fn contact_values(&self, displacements: &[Vec<f64>]) -> Vec<[f64; 3]> {
-        let mut places = vec![0; self.bodies.len()];
-        let value = |point: &crate::equilibrium::ContactPoint| {
-            let mut sum = [0.0; 3];
-            for side in &point.sides {
-                let pattern = &self.bodies[side.body].body.condensed.pattern;
-                let place = places[side.body];
-                places[side.body] += 1;
-                let own = &displacements[side.body][3 * place..];
-                let own = pattern.axes.turn_back_at(pattern.contact[place], [own[0], own[1], own[2]]);
-                (0..3).for_each(|axis| sum[axis] += side.weight * own[axis]);
-            }
-            sum
-        };
-        self.problem.boundary.points.iter().map(value).collect()
-    }
+/// Σ_sides weight · (contact displacements of the bodies) at every contact node, along the axes.
+fn contact_values(contact: &CompliantContact, displacements: &[Vec<f64>]) -> Vec<[f64; 3]> {
+    let mut places = vec![0; contact.bodies.len()];
+    let value = |point: &crate::equilibrium::ContactPoint| {
+        let mut sum = [0.0; 3];
+        for side in &point.sides {
+            let pattern = &contact.bodies[side.body].body.condensed.pattern;
+            let place = places[side.body];
+            places[side.body] += 1;
+            let own = &displacements[side.body][3 * place..];
+            let own = pattern.axes.turn_back_at(pattern.contact[place], [own[0], own[1], own[2]]);
+            (0..3).for_each(|axis| sum[axis] += side.weight * own[axis]);
+        }
+        sum
+    };
+    contact.problem.boundary.points.iter().map(value).collect()
+}
 
-    /// Adds −Σ_rows λ_r ∂d_r at the contact nodes to a column of the loads on the contact dofs.
-    fn add_turned_forces(&self, lambda: &[f64], changes: &[RowChange], loads: &mut [Mat<f64>], column: usize) {
-        let mut places = vec![0; self.bodies.len()];
-        for (point, change) in self.problem.boundary.points.iter().zip(changes) {
-            let rows = || point.rows().zip(&change.directions);
-            let force: [f64; 3] =
-                std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>());
-            for side in &point.sides {
-                let pattern = &self.bodies[side.body].body.condensed.pattern;
-                let place = places[side.body];
-                places[side.body] += 1;
-                let turned = pattern.axes.turn_at(pattern.contact[place], force);
-                for axis in (0..3).filter(|axis| !pattern.holds(3 * place + axis)) {
-                    loads[side.body][(3 * place + axis, column)] += side.weight * turned[axis];
-                }
+/// Adds −Σ_rows λ_r ∂d_r at the contact nodes to a column of the loads on the contact dofs.
+fn add_turned_forces(
+    contact: &CompliantContact,
+    lambda: &[f64],
+    changes: &[RowChange],
+    loads: &mut [Mat<f64>],
+    column: usize,
+) {
+    let mut places = vec![0; contact.bodies.len()];
+    for (point, change) in contact.problem.boundary.points.iter().zip(changes) {
+        let rows = || point.rows().zip(&change.directions);
+        let force: [f64; 3] =
+            std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>());
+        for side in &point.sides {
+            let pattern = &contact.bodies[side.body].body.condensed.pattern;
+            let place = places[side.body];
+            places[side.body] += 1;
+            let turned = pattern.axes.turn_at(pattern.contact[place], force);
+            for axis in (0..3).filter(|axis| !pattern.holds(3 * place + axis)) {
+                loads[side.body][(3 * place + axis, column)] += side.weight * turned[axis];
             }
         }
     }

@@ -1,10 +1,16 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
+use crate::direct::adjoint::adjoint;
 use crate::direct::compliant_body::{BodyRows, CompliantBody, ContactBody};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::CondensationPattern;
+use crate::direct::continuation::Reached;
+use crate::direct::continuation::equilibrium;
+use crate::direct::diagnosis::{diagnose, estimate_contraction};
 use crate::direct::displacement_load::CondensedLoad;
-use crate::direct::newton::{FLOOR_REACHED, Reached};
+use crate::direct::force_rounding::change_of_forces;
+use crate::direct::newton::FLOOR_REACHED;
+use crate::direct::tangents::tangents;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
@@ -135,7 +141,7 @@ impl DirectSolver {
                 error => refusal(&contact).unwrap_or(error),
             })?
         } else {
-            (contact.at_rest(), Work::default(), 0)
+            (at_rest(&contact), Work::default(), 0)
         };
         let displacements = contact.bodies.iter().map(|_| OnceLock::new()).collect();
         let rows = Arc::clone(&contact.rows);
@@ -166,7 +172,7 @@ impl DirectSolver {
         let size: usize = contact.bodies.iter().map(|body| body.body.free.len()).sum();
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
-        let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
+        let reached = equilibrium(contact, start.as_deref(), tolerance, max_steps);
         let (work, programs) = (reached.work(), reached.programs.as_ref().map_or(0, |programs| programs.count));
         if interrupted() {
             return Err(ContactError::Interrupted);
@@ -236,7 +242,7 @@ impl ContactSolver for DirectSolver {
         Stage::Adjoint.enter()?;
         let solution = &state.solution;
         let loads = displacements.map_or_else(Vec::new, |displacements| self.condensed_loads(state, displacements));
-        let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction, &loads);
+        let adjoint = adjoint(&state.contact, &solution.unknowns, &solution.linearizations, direction, &loads);
         let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
         let value_error = value_error.with_displacements(loads.iter().map(|load| load.size).sum());
         let u = state.displacement(0);
@@ -262,7 +268,7 @@ impl ContactSolver for DirectSolver {
         }
         Stage::Adjoint.enter()?;
         let (loads, approaches) = self.shape_loads(state, &velocities);
-        let tangents = state.contact.tangents(&state.solution.linearizations, &loads, &approaches);
+        let tangents = tangents(&state.contact, &state.solution.linearizations, &loads, &approaches);
         let entries = tangents.forces.iter().chain(&tangents.openings).flatten();
         if entries.copied().any(|entry| !entry.is_finite()) {
             return Err(ContactError::NotFinite { what: "tangents of the condensed state" });
@@ -275,7 +281,7 @@ impl ContactSolver for DirectSolver {
         if state.load == 0.0 {
             return Ok(Diagnosis { contraction: 0.0, condition: None });
         }
-        state.contact.diagnose(&state.solution.linearizations)
+        diagnose(&state.contact, &state.solution.linearizations)
     }
 
     fn estimate_contraction(&self, state: &DirectState, _max_products: usize) -> Result<f64, ContactError> {
@@ -283,7 +289,7 @@ impl ContactSolver for DirectSolver {
         if state.load == 0.0 {
             return Ok(0.0);
         }
-        Ok(state.contact.estimate_contraction(&state.solution.unknowns, &state.solution.linearizations))
+        Ok(estimate_contraction(&state.contact, &state.solution.unknowns, &state.solution.linearizations))
     }
 
     fn force_rounding(&self, state: &DirectState) -> Result<f64, ContactError> {
@@ -294,7 +300,7 @@ impl ContactSolver for DirectSolver {
         let (contact, solution) = (&state.contact, &state.solution);
         let parts = contact.bodies.iter().zip(self.problem.bodies.iter().zip(&state.positions));
         let delta = parts.map(|(own, (body, positions))| own.refinement(body, positions, &solution.forces));
-        Ok(contact.change_of_forces(&solution.linearizations, &delta.collect::<Vec<_>>()))
+        Ok(change_of_forces(contact, &solution.linearizations, &delta.collect::<Vec<_>>()))
     }
 
     fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
@@ -341,14 +347,12 @@ impl SolverState for DirectState {
     }
 }
 
-impl CompliantContact {
-    /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
-    fn at_rest(&self) -> CondensedSolution {
-        let unknowns = vec![0.0; self.row_count() + self.resultant.len()];
-        let linearizations = self.linearize(&self.residual(&unknowns, 0.0).1);
-        let (forces, displacement) = self.dimensional(&unknowns);
-        CondensedSolution { unknowns, displacement, forces, linearizations }
-    }
+/// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
+fn at_rest(contact: &CompliantContact) -> CondensedSolution {
+    let unknowns = vec![0.0; contact.row_count() + contact.resultant.len()];
+    let linearizations = contact.linearize(&contact.residual(&unknowns, 0.0).1);
+    let (forces, displacement) = contact.dimensional(&unknowns);
+    CondensedSolution { unknowns, displacement, forces, linearizations }
 }
 
 impl DirectState {
@@ -387,7 +391,7 @@ impl DirectState {
 /// The proof that there is no equilibrium, where one is found.
 #[cfg(feature = "interior-point")]
 fn refusal(contact: &CompliantContact) -> Option<ContactError> {
-    contact.refusal()
+    crate::direct::resistance::refusal(contact)
 }
 
 /// Proofs need cone programs.

@@ -10,6 +10,7 @@
 use crate::direct::compliant_body::ContactBody;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::newton::SPRINGS;
+use crate::direct::newton::active_system;
 use crate::equilibrium::Tangents;
 use crate::equilibrium::law::{Friction, Linearization};
 use crate::linear::dense::{DenseLu, multiply, multiply_columns};
@@ -17,70 +18,73 @@ use crate::linear::vector::{dot, norm};
 use faer::Mat;
 use nalgebra::DVector;
 
-impl CompliantContact {
-    /// Tangents at given derivatives, for forces on the contact dofs of every body (N, one column per change) and
-    /// ∂B u − ∂g over the packed rows of every change, mm.
-    pub(super) fn tangents(
-        &self,
-        linearizations: &[Linearization],
-        contact_loads: &[Mat<f64>],
-        approaches: &[Vec<f64>],
-    ) -> Tangents {
-        let boundary = &self.problem.boundary;
-        let (count, motions) = (self.row_count(), self.resultant.len());
-        let active = self.active_system(linearizations, 0.0, Friction::Coulomb);
-        let size = active.rows.len();
-        let mut sprung = active.matrix.clone();
-        for motion in size..size + motions {
-            sprung[(motion, motion)] = SPRINGS[0];
-        }
-        let driving = |(column, approach): (usize, &Vec<f64>)| self.driving(contact_loads, column, approach);
-        let driven: Vec<(Vec<f64>, Vec<f64>)> = approaches.iter().enumerate().map(driving).collect();
-        let mut right = Mat::<f64>::zeros(size + motions, approaches.len());
-        for (column, (constant, resultant)) in driven.iter().enumerate() {
-            let right = right.col_as_slice_mut(column);
-            let mut row = 0;
-            for (node, linearization) in boundary.points.iter().zip(linearizations) {
-                if *linearization == Linearization::Open {
-                    continue;
-                }
-                let block = linearization.derivative(node.row_count(), node.friction);
-                for coefficients in block.iter().take(node.row_count()) {
-                    right[row] = coefficients.iter().zip(&constant[node.rows()]).map(|(d, w)| d * w).sum();
-                    row += 1;
-                }
-            }
-            right[size..].copy_from_slice(resultant);
-        }
-        let (solution, residual) = refined(&DenseLu::new(&sprung), &active.matrix, right);
-        let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual, applications: 0 };
-        for (column, (constant, _)) in driven.iter().enumerate() {
-            let solution = solution.col_as_slice(column);
-            let mut forces = vec![0.0; count];
-            for (&row, value) in active.rows.iter().zip(solution) {
-                forces[row] = *value;
-            }
-            let (product, rigid) = (multiply(&self.compliance, &forces), multiply(&self.motions, &solution[size..]));
-            let opening = |start: usize| (constant[start] - product[start] + rigid[start]) * self.unit * self.load;
-            tangents.openings.push(boundary.points.iter().map(|point| opening(point.start)).collect());
-            forces.iter_mut().for_each(|force| *force *= self.load);
-            tangents.forces.push(forces);
-        }
-        tangents
+/// Tangents at given derivatives, for forces on the contact dofs of every body (N, one column per change) and
+/// ∂B u − ∂g over the packed rows of every change, mm.
+pub(super) fn tangents(
+    contact: &CompliantContact,
+    linearizations: &[Linearization],
+    contact_loads: &[Mat<f64>],
+    approaches: &[Vec<f64>],
+) -> Tangents {
+    let boundary = &contact.problem.boundary;
+    let (count, motions) = (contact.row_count(), contact.resultant.len());
+    let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);
+    let size = active.rows.len();
+    let mut sprung = active.matrix.clone();
+    for motion in size..size + motions {
+        sprung[(motion, motion)] = SPRINGS[0];
     }
+    let driving = |(column, approach): (usize, &Vec<f64>)| driving(contact, contact_loads, column, approach);
+    let driven: Vec<(Vec<f64>, Vec<f64>)> = approaches.iter().enumerate().map(driving).collect();
+    let mut right = Mat::<f64>::zeros(size + motions, approaches.len());
+    for (column, (constant, resultant)) in driven.iter().enumerate() {
+        let right = right.col_as_slice_mut(column);
+        let mut row = 0;
+        for (node, linearization) in boundary.points.iter().zip(linearizations) {
+            if *linearization == Linearization::Open {
+                continue;
+            }
+            let block = linearization.derivative(node.row_count(), node.friction);
+            for coefficients in block.iter().take(node.row_count()) {
+                right[row] = coefficients.iter().zip(&constant[node.rows()]).map(|(d, w)| d * w).sum();
+                row += 1;
+            }
+        }
+        right[size..].copy_from_slice(resultant);
+    }
+    let (solution, residual) = refined(&DenseLu::new(&sprung), &active.matrix, right);
+    let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual, applications: 0 };
+    for (column, (constant, _)) in driven.iter().enumerate() {
+        let solution = solution.col_as_slice(column);
+        let mut forces = vec![0.0; count];
+        for (&row, value) in active.rows.iter().zip(solution) {
+            forces[row] = *value;
+        }
+        let (product, rigid) = (multiply(&contact.compliance, &forces), multiply(&contact.motions, &solution[size..]));
+        let opening = |start: usize| (constant[start] - product[start] + rigid[start]) * contact.unit * contact.load;
+        tangents.openings.push(boundary.points.iter().map(|point| opening(point.start)).collect());
+        forces.iter_mut().for_each(|force| *force *= contact.load);
+        tangents.forces.push(forces);
+    }
+    tangents
+}
 
-    /// δd and δe, dimensionless, of a column of forces on the contact dofs and of ∂B u − ∂g.
-    fn driving(&self, contact_loads: &[Mat<f64>], column: usize, approach: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut constant = approach.to_vec();
-        let mut own = Vec::new();
-        for (ContactBody { body, rows }, loads) in self.bodies.iter().zip(contact_loads) {
-            let forces = loads.col_as_slice(column);
-            rows.add_jumps(&multiply(&body.compliance, forces), 1.0, &mut constant);
-            own.extend(body.motions.iter().map(|motion| dot(motion, forces) / self.load));
-        }
-        constant.iter_mut().for_each(|d| *d /= self.unit * self.load);
-        (constant, self.resultants_of(&DVector::from_vec(own)))
+/// δd and δe, dimensionless, of a column of forces on the contact dofs and of ∂B u − ∂g.
+fn driving(
+    contact: &CompliantContact,
+    contact_loads: &[Mat<f64>],
+    column: usize,
+    approach: &[f64],
+) -> (Vec<f64>, Vec<f64>) {
+    let mut constant = approach.to_vec();
+    let mut own = Vec::new();
+    for (ContactBody { body, rows }, loads) in contact.bodies.iter().zip(contact_loads) {
+        let forces = loads.col_as_slice(column);
+        rows.add_jumps(&multiply(&body.compliance, forces), 1.0, &mut constant);
+        own.extend(body.motions.iter().map(|motion| dot(motion, forces) / contact.load));
     }
+    constant.iter_mut().for_each(|d| *d /= contact.unit * contact.load);
+    (constant, contact.resultants_of(&DVector::from_vec(own)))
 }
 
 /// M⁻¹ B by a factor of a matrix near M, refined against M; also the largest relative residual of a column.

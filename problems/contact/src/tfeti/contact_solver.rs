@@ -7,7 +7,7 @@ use crate::equilibrium::{
 };
 use crate::error::ContactError;
 use crate::linear::vector::dot;
-use crate::tfeti::derivative::{DisplacementLoad, shape_derivative};
+use crate::tfeti::derivative::{self, DisplacementLoad, shape_derivative};
 use crate::tfeti::solver::{Clock, TotalFeti};
 use crate::tfeti::state::TornState;
 use crate::tfeti::torn::whole_bodies;
@@ -43,8 +43,9 @@ impl TotalFeti {
         let natural = (dot(scaled.contact(), iterate.multipliers.contact()).abs() + work.abs())
             / (contact.stiffness * size_of_body + contact.load);
         let linearizations = &state.solution.linearizations;
-        let adjoint = contact.adjoint(linearizations, &scaled, load.as_ref(), tolerance, natural, max_products)?;
-        let value_error = contact.value_error(iterate, &adjoint, &scaled).with_displacements(size);
+        let adjoint =
+            derivative::adjoint(&contact, linearizations, &scaled, load.as_ref(), tolerance, natural, max_products)?;
+        let value_error = derivative::value_error(&contact, iterate, &adjoint, &scaled).with_displacements(size);
         let adjoint_seconds = clock.lap();
         Stage::ShapeDerivative.enter()?;
         let positions = shape_derivative(&self.model, state.shape(), &adjoint);
@@ -94,19 +95,19 @@ impl ContactSolver for TotalFeti {
             return Ok(Tangents::at_rest(self.problem(), &state.rows, &self.problem().map.velocities(changes)));
         };
         Stage::Adjoint.enter()?;
-        contact.tangents(state.shape(), &state.solution.linearizations, changes, tolerance)
+        derivative::tangents(&contact, state.shape(), &state.solution.linearizations, changes, tolerance)
     }
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
         match self.contact_of(state)? {
-            Some(contact) => contact.diagnose(&state.solution.linearizations),
+            Some(contact) => derivative::diagnose(&contact, &state.solution.linearizations),
             None => Ok(Diagnosis { contraction: 0.0, condition: None }),
         }
     }
 
     fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
         let Some(contact) = self.contact_of(state)? else { return Ok(0.0) };
-        contact.estimate_contraction(&state.solution, max_products)
+        derivative::estimate_contraction(&contact, &state.solution, max_products)
     }
 
     /// Torn copies of a node are averaged. Of several processes, the first one alone gets the bodies, the others none.

@@ -25,7 +25,7 @@ mod torn;
 pub(crate) use derivative::MAX_COLUMNS;
 pub use dual::{DualOperator, Precision};
 pub use newton::Recycling;
-pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
+pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, solve_by_successive_approximations};
 pub use solver::{DualMethod, TotalFeti};
 pub use state::TornState;
 pub use torn::{PreconditionerKind, TornModel, TornOptions};

@@ -9,8 +9,8 @@ use crate::equilibrium::{
 use crate::error::ContactError;
 use crate::solvers::SolverKind;
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
-use crate::tfeti::newton::{NewtonSettings, Recycling};
-use crate::tfeti::paper::AugmentedLagrangianSettings;
+use crate::tfeti::newton::{self, NewtonSettings, Recycling};
+use crate::tfeti::paper::{AugmentedLagrangianSettings, solve_by_successive_approximations};
 use crate::tfeti::state::TornState;
 use crate::tfeti::torn::{PreconditionerKind, TornModel, TornOptions, TornSystem};
 use std::sync::Arc;
@@ -108,13 +108,13 @@ impl TotalFeti {
                 let settings = NewtonSettings::to(tolerance);
                 let max_products = max_products.unwrap_or(settings.max_products);
                 let settings = NewtonSettings { recycling, max_products, ..settings };
-                let method = |contact: &TornContact<'_>| Ok((contact.solve(start, &settings)?, ()));
+                let method = |contact: &TornContact<'_>| Ok((newton::solve(contact, start, &settings)?, ()));
                 let (state, ()) = self.attempt_by(SolverKind::Newton, controls, tolerance, method)?;
                 Ok(state)
             }
             DualMethod::SuccessiveApproximations => {
                 let settings = AugmentedLagrangianSettings::to(tolerance);
-                let method = |contact: &TornContact<'_>| contact.solve_by_successive_approximations(start, &settings);
+                let method = |contact: &TornContact<'_>| solve_by_successive_approximations(contact, start, &settings);
                 let (state, counts) = self.attempt_by(SolverKind::AugmentedLagrangian, controls, tolerance, method)?;
                 Ok(ContactState {
                     contraction: Some(counts.contraction).filter(|factor| *factor > 0.0),

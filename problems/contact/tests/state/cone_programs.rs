@@ -3,7 +3,7 @@
 use crate::common::start_height;
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
-use contact::direct::DirectSolver;
+use contact::direct::{DirectSolver, by_cone_programs};
 use contact::equilibrium::{ContactProblem, ContactRows, ContactSolver};
 use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, Load, Scene, Support, hertz, signorini};
 use contact::shape::ShapeBounds;
@@ -32,7 +32,7 @@ fn cone_programs_lead_to_the_states_of_newtons_method() {
             let solver = DirectSolver::new(Arc::clone(&problem)).unwrap();
             let state = solver.solve(&controls, None, 0.0).unwrap();
             let mut contact = solver.contact(&controls).unwrap();
-            let found = contact.by_cone_programs(0.0, MANY_STEPS);
+            let found = by_cone_programs(&mut contact, 0.0, MANY_STEPS);
             let (forces, _) = contact.dimensional(found.unknowns.as_ref().unwrap());
             let expected = objective(&state.rows, &state.forces.normal);
             let normal: Vec<f64> = problem.boundary.points.iter().map(|point| forces[point.start]).collect();
@@ -56,7 +56,7 @@ fn cone_programs_keep_within_their_work() {
     let mut contact = DirectSolver::new(problem).unwrap().contact(&[100.0; 36]).unwrap();
     let before = contact.constant().to_vec();
     for steps in [0, 3] {
-        let found = contact.by_cone_programs(0.0, steps);
+        let found = by_cone_programs(&mut contact, 0.0, steps);
         assert!(found.unknowns.is_none() && found.steps() <= steps, "{}", found.steps());
         assert_eq!(contact.constant(), before);
     }

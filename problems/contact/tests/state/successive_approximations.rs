@@ -11,6 +11,7 @@ use contact::qp::QpError;
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{
     AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornOptions, TornState, TotalFeti,
+    solve_by_successive_approximations,
 };
 use std::sync::Arc;
 
@@ -45,7 +46,7 @@ fn paper(
     let controls = controls(solver.problem());
     let (state, counts) =
         solver.solve_by(SolverKind::AugmentedLagrangian, &controls, settings.tolerance, |contact| {
-            contact.solve_by_successive_approximations(start, settings)
+            solve_by_successive_approximations(contact, start, settings)
         })?;
     let (forces, work) = (state.forces.clone(), state.work());
     Ok(Paper { state: state.solution, forces, work, counts })

@@ -7,7 +7,7 @@ use contact::equilibrium::{Configuration, ContactForces, ContactProblem, Contact
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Held, Scene, hertz, signorini};
-use contact::tfeti::{AugmentedLagrangianSettings, TornOptions, TotalFeti};
+use contact::tfeti::{AugmentedLagrangianSettings, TornOptions, TotalFeti, solve_by_successive_approximations};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
@@ -104,7 +104,7 @@ fn accurate_successive_approximations_contract_as_diagnosed() {
     let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
     let (state, counts) = solver
         .solve_by(SolverKind::AugmentedLagrangian, &controls, 0.0, |contact| {
-            contact.solve_by_successive_approximations(None, &settings)
+            solve_by_successive_approximations(contact, None, &settings)
         })
         .unwrap();
     let observed = counts.contraction;

@@ -52,65 +52,63 @@ struct AdjointIterate {
     residual: f64,
 }
 
-impl TornContact<'_> {
-    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on
-    /// u. `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is.
-    /// `max_products`: products with F allowed in all.
-    ///
-    /// # Errors
-    /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
-    pub fn adjoint(
-        &self,
-        linearizations: &[Linearization],
-        direction: &RowVector,
-        load: Option<&DisplacementLoad>,
-        tolerance: f64,
-        natural: f64,
-        max_products: usize,
-    ) -> Result<TornAdjoint, ContactError> {
-        let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
-        let mut right: Vec<f64> = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
-        if let Some(load) = load {
-            add_scaled(&mut right, 1.0, &active.rows.trial_transposed(&load.jumps));
-        }
-        let system = AdjointSystem { contact: self, active, load, right };
-        let mut iterate = system.at_start();
-        // Where equilibrium alone determines the forces, the right side is rigid, and only rounding is left of it.
-        let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * self.norm(&system.right));
-        let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
-        let size = size.max(natural);
-        let mut precision = self.precision;
-        for _cycle in 0..MAX_CYCLES {
-            // The last one tells the residual.
-            let left = max_products.saturating_sub(self.operator.applications() + 1);
-            if iterate.residual <= goal || left == 0 {
-                break;
-            }
-            let previous = iterate.residual;
-            system.adjoint_cycle(&mut iterate, goal, precision, left.min(MAX_KRYLOV));
-            match next_cycle(precision, previous, iterate.residual, goal) {
-                NextCycle::Continue => {}
-                NextCycle::Double => precision = Precision::Double,
-                NextCycle::DoubleFromZero => {
-                    precision = Precision::Double;
-                    iterate = system.at_start();
-                }
-                NextCycle::Stop => break,
-            }
-        }
-        if iterate.residual.is_nan()
-            || iterate.residual > (TIGHTEST_ACCEPTABLE.max(tolerance) * size).max(NATURAL_ACCEPTABLE * natural)
-        {
-            return Err(ContactError::NotConverged {
-                solver: "adjoint GMRES on TFETI",
-                residual: iterate.residual / size,
-                tolerance,
-                iterations: self.operator.applications(),
-                history: vec![iterate.residual / size],
-            });
-        }
-        Ok(system.recover(&iterate))
+/// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on
+/// u. `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is.
+/// `max_products`: products with F allowed in all.
+///
+/// # Errors
+/// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
+pub fn adjoint(
+    contact: &TornContact<'_>,
+    linearizations: &[Linearization],
+    direction: &RowVector,
+    load: Option<&DisplacementLoad>,
+    tolerance: f64,
+    natural: f64,
+    max_products: usize,
+) -> Result<TornAdjoint, ContactError> {
+    let active = contact.active_set(linearizations.to_vec(), Friction::Coulomb)?;
+    let mut right: Vec<f64> = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
+    if let Some(load) = load {
+        add_scaled(&mut right, 1.0, &active.rows.trial_transposed(&load.jumps));
     }
+    let system = AdjointSystem { contact, active, load, right };
+    let mut iterate = system.at_start();
+    // Where equilibrium alone determines the forces, the right side is rigid, and only rounding is left of it.
+    let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * contact.norm(&system.right));
+    let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
+    let size = size.max(natural);
+    let mut precision = contact.precision;
+    for _cycle in 0..MAX_CYCLES {
+        // The last one tells the residual.
+        let left = max_products.saturating_sub(contact.operator.applications() + 1);
+        if iterate.residual <= goal || left == 0 {
+            break;
+        }
+        let previous = iterate.residual;
+        system.adjoint_cycle(&mut iterate, goal, precision, left.min(MAX_KRYLOV));
+        match next_cycle(precision, previous, iterate.residual, goal) {
+            NextCycle::Continue => {}
+            NextCycle::Double => precision = Precision::Double,
+            NextCycle::DoubleFromZero => {
+                precision = Precision::Double;
+                iterate = system.at_start();
+            }
+            NextCycle::Stop => break,
+        }
+    }
+    if iterate.residual.is_nan()
+        || iterate.residual > (TIGHTEST_ACCEPTABLE.max(tolerance) * size).max(NATURAL_ACCEPTABLE * natural)
+    {
+        return Err(ContactError::NotConverged {
+            solver: "adjoint GMRES on TFETI",
+            residual: iterate.residual / size,
+            tolerance,
+            iterations: contact.operator.applications(),
+            history: vec![iterate.residual / size],
+        });
+    }
+    Ok(system.recover(&iterate))
 }
 
 impl AdjointSystem<'_> {

@@ -16,6 +16,10 @@ mod shape_derivative;
 mod shape_loads;
 mod tangents;
 
+pub use adjoint::adjoint;
+pub use contraction::{diagnose, estimate_contraction};
 pub use displacement_load::DisplacementLoad;
+pub use error_estimate::value_error;
 pub use shape_derivative::{SolvedShape, shape_derivative};
 pub(crate) use tangents::MAX_COLUMNS;
+pub use tangents::tangents;

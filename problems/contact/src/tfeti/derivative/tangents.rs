@@ -61,60 +61,58 @@ struct TangentIterate<D, const N: usize> {
     natural: Row<f64, N>,
 }
 
-impl TornContact<'_> {
-    /// Tangents for changes of the controls.
-    ///
-    /// # Errors
-    /// [`ContactError::NotConverged`] when a column does not reach the tolerance, [`ContactError::Unheld`].
-    pub fn tangents(
-        &self,
-        shape: SolvedShape<'_>,
-        linearizations: &[Linearization],
-        changes: &[Vec<f64>],
-        tolerance: f64,
-    ) -> Result<Tangents, ContactError> {
-        let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
-        let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual: 0.0, applications: 0 };
-        let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
-        for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
-            match batch.len().div_ceil(LANES) {
-                0 | 1 => self.tangent_batch::<1>(&active, shape, batch, tolerance, &mut tangents)?,
-                2 | 3 => self.tangent_batch::<3>(&active, shape, batch, tolerance, &mut tangents)?,
-                _ => self.tangent_batch::<5>(&active, shape, batch, tolerance, &mut tangents)?,
-            }
+/// Tangents for changes of the controls.
+///
+/// # Errors
+/// [`ContactError::NotConverged`] when a column does not reach the tolerance, [`ContactError::Unheld`].
+pub fn tangents(
+    contact: &TornContact<'_>,
+    shape: SolvedShape<'_>,
+    linearizations: &[Linearization],
+    changes: &[Vec<f64>],
+    tolerance: f64,
+) -> Result<Tangents, ContactError> {
+    let active = contact.active_set(linearizations.to_vec(), Friction::Coulomb)?;
+    let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual: 0.0, applications: 0 };
+    let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
+    for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
+        match batch.len().div_ceil(LANES) {
+            0 | 1 => tangent_batch::<1>(contact, &active, shape, batch, tolerance, &mut tangents)?,
+            2 | 3 => tangent_batch::<3>(contact, &active, shape, batch, tolerance, &mut tangents)?,
+            _ => tangent_batch::<5>(contact, &active, shape, batch, tolerance, &mut tangents)?,
         }
-        tangents.applications = self.operator.applications();
-        Ok(tangents)
     }
+    tangents.applications = contact.operator.applications();
+    Ok(tangents)
+}
 
-    /// Appends the tangents of at most 8N changes.
-    fn tangent_batch<const N: usize>(
-        &self,
-        active: &ActiveSet<'_>,
-        shape: SolvedShape<'_>,
-        changes: &[Vec<f64>],
-        tolerance: f64,
-        tangents: &mut Tangents,
-    ) -> Result<(), ContactError> {
-        if self.single_is_enough(tolerance) {
-            let system = TangentSystem::<f32, N>::new(self, active, shape, changes);
-            if let Some(iterate) = system.solve_once(tolerance) {
-                system.append(&iterate, tangents);
-                return Ok(());
-            }
+/// Appends the tangents of at most 8N changes.
+fn tangent_batch<const N: usize>(
+    contact: &TornContact<'_>,
+    active: &ActiveSet<'_>,
+    shape: SolvedShape<'_>,
+    changes: &[Vec<f64>],
+    tolerance: f64,
+    tangents: &mut Tangents,
+) -> Result<(), ContactError> {
+    if single_is_enough(contact, tolerance) {
+        let system = TangentSystem::<f32, N>::new(contact, active, shape, changes);
+        if let Some(iterate) = system.solve_once(tolerance) {
+            system.append(&iterate, tangents);
+            return Ok(());
         }
-        let system = TangentSystem::<f64, N>::new(self, active, shape, changes);
-        let iterate = system.solve_in_cycles(tolerance)?;
-        system.append(&iterate, tangents);
-        Ok(())
     }
+    let system = TangentSystem::<f64, N>::new(contact, active, shape, changes);
+    let iterate = system.solve_in_cycles(tolerance)?;
+    system.append(&iterate, tangents);
+    Ok(())
+}
 
-    /// Whether single precision alone reaches a tolerance, estimated from the condition of the subdomains.
-    fn single_is_enough(&self, tolerance: f64) -> bool {
-        self.precision == Precision::Mixed
-            && tolerance >= TIGHTEST_SINGLE
-            && SINGLE_ROUNDING * self.operator.system.forward_error <= MAX_ROUNDING_SHARE * tolerance
-    }
+/// Whether single precision alone reaches a tolerance, estimated from the condition of the subdomains.
+fn single_is_enough(contact: &TornContact<'_>, tolerance: f64) -> bool {
+    contact.precision == Precision::Mixed
+        && tolerance >= TIGHTEST_SINGLE
+        && SINGLE_ROUNDING * contact.operator.system.forward_error <= MAX_ROUNDING_SHARE * tolerance
 }
 
 impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {

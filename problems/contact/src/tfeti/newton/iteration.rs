@@ -7,10 +7,15 @@
 use crate::equilibrium::Stage;
 use crate::error::ContactError;
 use crate::tfeti::dual::{Iterate, Precision, TornContact, TornSolution};
+use crate::tfeti::newton::descent::{descend, replace_image};
+use crate::tfeti::newton::holding::holding_set_at;
 use crate::tfeti::newton::linear_solve::LinearAccuracy;
+use crate::tfeti::newton::linear_solve::linear_solve;
 use crate::tfeti::newton::recycling::Recycled;
+use crate::tfeti::newton::rounding::not_converged;
 use crate::tfeti::newton::settings::NewtonSettings;
 use crate::tfeti::newton::stagnation::{circles, stagnates};
+use crate::tfeti::newton::start::{bonded, first_iterate};
 
 /// First and largest forcing term.
 const FIRST_FORCING: f64 = 0.3;
@@ -21,94 +26,96 @@ const MAX_HALVINGS: usize = 6;
 /// Relative decrease of the residual asked of a step of length one.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-impl TornContact<'_> {
-    /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact
-    /// steps do not converge, a second run solves every linear system as accurately as rounding allows. The residual
-    /// that decides, and that certifies the state, comes from a fresh product with F.
-    ///
-    /// # Errors
-    /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
-    /// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
-    pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
-        let mut recycled = settings.recycling.pays(self.space.contact_amplitude_count()).then(Recycled::default);
-        let mut iterate = self.start(start, settings.max_products, recycled.as_mut())?;
-        let mut residual = self.residual(&iterate);
-        let mut history = vec![residual];
-        if let Some(mut recycled) = recycled {
-            residual = self.descend(&mut iterate, &mut recycled, residual, settings, &mut history)?;
-        }
-        if residual > settings.tolerance || self.precision == Precision::Double {
-            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov, self.products_left(settings));
-            iterate = self.newton_steps(iterate, residual, deserved, settings, &mut history)?;
-            residual = self.replace_image(&mut iterate);
-        }
-        if (residual.is_nan() || residual > settings.acceptable) && self.products_left(settings) > 0 {
-            let exact = self.bonded(LinearAccuracy::exact(self.products_left(settings)), None)?;
-            let start = self.residual(&exact);
-            history.push(start);
-            let accuracy = |_| LinearAccuracy::exact(self.products_left(settings));
-            iterate = self.newton_steps(exact, start, accuracy, settings, &mut history)?;
-            residual = self.replace_image(&mut iterate);
-        }
-        if residual.is_nan() || residual > settings.acceptable {
-            return Err(self.not_converged(residual, settings, history));
-        }
-        Ok(self.solution(iterate, residual, history.len() - 1))
+/// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact
+/// steps do not converge, a second run solves every linear system as accurately as rounding allows. The residual
+/// that decides, and that certifies the state, comes from a fresh product with F.
+///
+/// # Errors
+/// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
+/// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
+pub fn solve(
+    contact: &TornContact<'_>,
+    start: Option<&[f64]>,
+    settings: &NewtonSettings,
+) -> Result<TornSolution, ContactError> {
+    let mut recycled = settings.recycling.pays(contact.space.contact_amplitude_count()).then(Recycled::default);
+    let mut iterate = first_iterate(contact, start, settings.max_products, recycled.as_mut())?;
+    let mut residual = contact.residual(&iterate);
+    let mut history = vec![residual];
+    if let Some(mut recycled) = recycled {
+        residual = descend(contact, &mut iterate, &mut recycled, residual, settings, &mut history)?;
     }
+    if residual > settings.tolerance || contact.precision == Precision::Double {
+        let deserved = |target| {
+            LinearAccuracy::to(target, settings.max_krylov, settings.products_left(contact.operator.applications()))
+        };
+        iterate = newton_steps(contact, iterate, residual, deserved, settings, &mut history)?;
+        residual = replace_image(contact, &mut iterate);
+    }
+    if (residual.is_nan() || residual > settings.acceptable)
+        && settings.products_left(contact.operator.applications()) > 0
+    {
+        let exact =
+            bonded(contact, LinearAccuracy::exact(settings.products_left(contact.operator.applications())), None)?;
+        let start = contact.residual(&exact);
+        history.push(start);
+        let accuracy = |_| LinearAccuracy::exact(settings.products_left(contact.operator.applications()));
+        iterate = newton_steps(contact, exact, start, accuracy, settings, &mut history)?;
+        residual = replace_image(contact, &mut iterate);
+    }
+    if residual.is_nan() || residual > settings.acceptable {
+        return Err(not_converged(contact, residual, settings, history));
+    }
+    Ok(contact.solution(iterate, residual, history.len() - 1))
+}
 
-    /// Products with F that the settings still allow.
-    pub(crate) fn products_left(&self, settings: &NewtonSettings) -> usize {
-        settings.max_products.saturating_sub(self.operator.applications())
-    }
-
-    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear
-    /// solves, for the residual (mm) that the outer residual deserves.
-    fn newton_steps(
-        &self,
-        mut iterate: Iterate,
-        mut residual: f64,
-        accuracy: impl Fn(f64) -> LinearAccuracy,
-        settings: &NewtonSettings,
-        history: &mut Vec<f64>,
-    ) -> Result<Iterate, ContactError> {
-        let first = history.len() - 1;
-        let mut forcing = FIRST_FORCING;
-        while residual > settings.tolerance && history.len() - first <= settings.max_steps {
-            if (residual <= settings.acceptable && stagnates(history, 1))
-                || circles(&history[first..])
-                || self.products_left(settings) == 0
-            {
-                break;
-            }
-            let target = forcing.max(0.3 * settings.tolerance / residual) * residual * self.load / self.stiffness;
-            let active = self.held_at(&iterate)?;
-            let candidate = self.linear_solve(&active, &iterate.multipliers, accuracy(target), None)?;
-            let (next, length) = self.search(iterate, candidate, residual);
-            iterate = next;
-            let previous = residual;
-            residual = self.residual(&iterate);
-            if !residual.is_finite() {
-                return Err(ContactError::NotFinite { what: "contact residual" });
-            }
-            history.push(residual);
-            Stage::Contact.reached(history.len() - 1, residual)?;
-            forcing = eisenstat_walker(residual, previous, length);
+/// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear
+/// solves, for the residual (mm) that the outer residual deserves.
+fn newton_steps(
+    contact: &TornContact<'_>,
+    mut iterate: Iterate,
+    mut residual: f64,
+    accuracy: impl Fn(f64) -> LinearAccuracy,
+    settings: &NewtonSettings,
+    history: &mut Vec<f64>,
+) -> Result<Iterate, ContactError> {
+    let first = history.len() - 1;
+    let mut forcing = FIRST_FORCING;
+    while residual > settings.tolerance && history.len() - first <= settings.max_steps {
+        if (residual <= settings.acceptable && stagnates(history, 1))
+            || circles(&history[first..])
+            || settings.products_left(contact.operator.applications()) == 0
+        {
+            break;
         }
-        Ok(iterate)
-    }
-
-    /// Halves the step until the residual falls; takes the full step when no length helps (a change of many statuses).
-    fn search(&self, from: Iterate, to: Iterate, residual: f64) -> (Iterate, f64) {
-        let mut length = 1.0;
-        for _halving in 0..MAX_HALVINGS {
-            let trial = if length == 1.0 { to.clone() } else { from.towards(&to, length) };
-            if self.residual(&trial) <= (1.0 - SUFFICIENT_DECREASE * length) * residual {
-                return (trial, length);
-            }
-            length *= 0.5;
+        let target = forcing.max(0.3 * settings.tolerance / residual) * residual * contact.load / contact.stiffness;
+        let active = holding_set_at(contact, &iterate)?;
+        let candidate = linear_solve(contact, &active, &iterate.multipliers, accuracy(target), None)?;
+        let (next, length) = search(contact, iterate, candidate, residual);
+        iterate = next;
+        let previous = residual;
+        residual = contact.residual(&iterate);
+        if !residual.is_finite() {
+            return Err(ContactError::NotFinite { what: "contact residual" });
         }
-        (to, 1.0)
+        history.push(residual);
+        Stage::Contact.reached(history.len() - 1, residual)?;
+        forcing = eisenstat_walker(residual, previous, length);
     }
+    Ok(iterate)
+}
+
+/// Halves the step until the residual falls; takes the full step when no length helps (a change of many statuses).
+fn search(contact: &TornContact<'_>, from: Iterate, to: Iterate, residual: f64) -> (Iterate, f64) {
+    let mut length = 1.0;
+    for _halving in 0..MAX_HALVINGS {
+        let trial = if length == 1.0 { to.clone() } else { from.towards(&to, length) };
+        if contact.residual(&trial) <= (1.0 - SUFFICIENT_DECREASE * length) * residual {
+            return (trial, length);
+        }
+        length *= 0.5;
+    }
+    (to, 1.0)
 }
 
 /// Forcing term of the next step.

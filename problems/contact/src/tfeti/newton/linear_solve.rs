@@ -48,63 +48,61 @@ impl LinearAccuracy {
 /// Share of the residual that a cycle of iterative refinement may leave for another one to follow.
 const MAX_REFINED_SHARE: f64 = 0.5;
 
-impl TornContact<'_> {
-    /// Solves the reduced system of an active set, starting from given multipliers. The directions of its Krylov space
-    /// join `recycled`, where later iterates will use them.
-    pub(crate) fn linear_solve(
-        &self,
-        active: &ActiveSet<'_>,
-        start: &RowVector,
-        accuracy: LinearAccuracy,
-        mut recycled: Option<&mut Recycled>,
-    ) -> Result<Iterate, ContactError> {
-        let rows = &active.rows;
-        let mut unknowns = rows.unknowns_of(start);
-        let (mut first, mut last) = (None, f64::INFINITY);
-        let mut image = self.zeros();
-        let allowed = self.operator.applications().saturating_add(accuracy.max_products);
-        for _cycle in 0..accuracy.cycles {
-            active.enforce(&mut unknowns, self.space.resultants());
-            image = self.operator.apply(&rows.trial(&unknowns));
-            let mut projected = self.reduced_residual(rows, &unknowns, &image);
-            active.project(&mut projected);
-            let size = self.norm(&projected);
-            let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
-            if size <= target || size > MAX_REFINED_SHARE * last {
-                break;
-            }
-            last = size;
-            let krylov = gmres(
-                &self.operator.model.sums(),
-                &projected,
-                target,
-                accuracy.max_krylov.min(allowed.saturating_sub(self.operator.applications())),
-                accuracy.patience,
-                |v| self.projected_precondition(active, v),
-                |z| self.reduced_product(active, z),
-            );
-            let directions = krylov.directions.iter().zip(krylov.payloads);
-            for (coefficient, (direction, product)) in krylov.coefficients.iter().zip(directions) {
-                add_scaled(&mut unknowns, *coefficient, direction);
-                add_scaled(&mut image, *coefficient, &product);
-                if let Some(recycled) = recycled.as_deref_mut() {
-                    let amplitudes = balancing_amplitudes(active, direction, &product);
-                    let jumps = self.space.jumps(&amplitudes);
-                    let forces = Some((rows.trial(direction), product));
-                    recycled.push(self, Direction { amplitudes, forces }, jumps);
-                }
+/// Solves the reduced system of an active set, starting from given multipliers. The directions of its Krylov space
+/// join `recycled`, where later iterates will use them.
+pub(crate) fn linear_solve(
+    contact: &TornContact<'_>,
+    active: &ActiveSet<'_>,
+    start: &RowVector,
+    accuracy: LinearAccuracy,
+    mut recycled: Option<&mut Recycled>,
+) -> Result<Iterate, ContactError> {
+    let rows = &active.rows;
+    let mut unknowns = rows.unknowns_of(start);
+    let (mut first, mut last) = (None, f64::INFINITY);
+    let mut image = contact.zeros();
+    let allowed = contact.operator.applications().saturating_add(accuracy.max_products);
+    for _cycle in 0..accuracy.cycles {
+        active.enforce(&mut unknowns, contact.space.resultants());
+        image = contact.operator.apply(&rows.trial(&unknowns));
+        let mut projected = reduced_residual(contact, rows, &unknowns, &image);
+        active.project(&mut projected);
+        let size = contact.norm(&projected);
+        let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
+        if size <= target || size > MAX_REFINED_SHARE * last {
+            break;
+        }
+        last = size;
+        let krylov = gmres(
+            &contact.operator.model.sums(),
+            &projected,
+            target,
+            accuracy.max_krylov.min(allowed.saturating_sub(contact.operator.applications())),
+            accuracy.patience,
+            |v| contact.projected_precondition(active, v),
+            |z| contact.reduced_product(active, z),
+        );
+        let directions = krylov.directions.iter().zip(krylov.payloads);
+        for (coefficient, (direction, product)) in krylov.coefficients.iter().zip(directions) {
+            add_scaled(&mut unknowns, *coefficient, direction);
+            add_scaled(&mut image, *coefficient, &product);
+            if let Some(recycled) = recycled.as_deref_mut() {
+                let amplitudes = balancing_amplitudes(active, direction, &product);
+                let jumps = contact.space.jumps(&amplitudes);
+                let forces = Some((rows.trial(direction), product));
+                recycled.push(contact, Direction { amplitudes, forces }, jumps);
             }
         }
-        let amplitudes = active.amplitudes(&self.reduced_residual(rows, &unknowns, &image));
-        Ok(self.iterate(rows.trial(&unknowns), image, amplitudes))
     }
+    let amplitudes = active.amplitudes(&reduced_residual(contact, rows, &unknowns, &image));
+    Ok(contact.iterate(rows.trial(&unknowns), image, amplitudes))
+}
 
-    /// Qᵀ(d − F T y) − Δ y.
-    fn reduced_residual(&self, rows: &ActiveRows<'_>, unknowns: &[f64], image: &RowVector) -> Vec<f64> {
-        let mut residual = rows.test_transposed(&self.rest(image));
-        rows.add_compliance(unknowns, &mut residual, -1.0);
-        residual
-    }
+/// Qᵀ(d − F T y) − Δ y.
+fn reduced_residual(contact: &TornContact<'_>, rows: &ActiveRows<'_>, unknowns: &[f64], image: &RowVector) -> Vec<f64> {
+    let mut residual = rows.test_transposed(&contact.rest(image));
+    rows.add_compliance(unknowns, &mut residual, -1.0);
+    residual
 }
 
 /// Amplitudes that remove the rigid part of what a direction y with product F T y does to the reduced residual.

@@ -16,4 +16,6 @@ mod settings;
 mod stagnation;
 mod start;
 
+pub use iteration::solve;
 pub use settings::{NewtonSettings, Recycling};
+pub(crate) use start::{balanced, first_iterate, slip_bounds};

@@ -36,6 +36,11 @@ impl NewtonSettings {
             recycling: Recycling::default(),
         }
     }
+
+    /// Products with F that are left after so many.
+    pub(crate) fn products_left(&self, applications: usize) -> usize {
+        self.max_products.saturating_sub(applications)
+    }
 }
 
 /// Rigid amplitudes of subdomains at the contact boundary up to which directions are recycled: with more, the repeated

@@ -7,4 +7,6 @@
 mod projected_dual;
 mod successive_approximations;
 
-pub use successive_approximations::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
+pub use successive_approximations::{
+    AugmentedLagrangianCounts, AugmentedLagrangianSettings, solve_by_successive_approximations,
+};

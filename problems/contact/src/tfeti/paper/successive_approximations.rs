@@ -17,6 +17,7 @@ use crate::qp::{
     StepCounts, WarmStart,
 };
 use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
+use crate::tfeti::newton::{balanced, first_iterate, slip_bounds};
 use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, projected_preconditioner};
 
 /// When to stop, and how the dual QPs are solved.
@@ -95,170 +96,165 @@ struct FixedPoint {
     counts: AugmentedLagrangianCounts,
 }
 
-impl TornContact<'_> {
-    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar
-    /// problem or from the bonded problem.
-    ///
-    /// # Errors
-    /// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`]
-    /// from the dual QP, [`ContactError::NotConverged`], [`ContactError::NoEquilibrium`].
-    pub fn solve_by_successive_approximations(
-        &self,
-        start: Option<&[f64]>,
-        settings: &AugmentedLagrangianSettings,
-    ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
-        let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
-        let coarse = OrthonormalCoarse::new(self.space, self.operator.model)?;
-        let dual = ProjectedDual { operator: &self.operator, coarse: &coarse };
-        let linear = dual.homogenised(&self.constant);
-        let mut state = self.first(&self.start(start, usize::MAX, None)?, &coarse);
-        let mut history = Vec::new();
-        let mut aimed = *settings;
-        let (iterate, residual) = loop {
-            self.approximate(&dual, &linear, &aimed, &mut state, &mut history)?;
-            let iterate = self.balanced(&self.operator.model.constraints.own_rows(&state.warm.x), &state.bounds)?;
-            let residual = self.residual(&iterate);
-            let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
-            if residual.is_nan() || residual <= acceptable || spent {
-                break (iterate, residual);
-            }
-            // Balancing the multipliers has cost more than the share kept for it.
-            aimed.tolerance = (TIGHTENING * aimed.tolerance).max(TIGHTEST_TOLERANCE);
-        };
-        if residual.is_nan() || residual > acceptable {
-            let factor = overall_contraction(&state.changes);
-            if factor > MAX_CONTRACTION {
-                return Err(ContactError::NoContraction { factor, history: state.changes });
-            }
-            return Err(ContactError::NotConverged {
-                solver: "successive approximations",
-                residual,
-                tolerance: settings.tolerance,
-                iterations: history.len(),
-                history,
-            });
+/// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar
+/// problem or from the bonded problem.
+///
+/// # Errors
+/// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`]
+/// from the dual QP, [`ContactError::NotConverged`], [`ContactError::NoEquilibrium`].
+pub fn solve_by_successive_approximations(
+    contact: &TornContact<'_>,
+    start: Option<&[f64]>,
+    settings: &AugmentedLagrangianSettings,
+) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
+    let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
+    let coarse = OrthonormalCoarse::new(contact.space, contact.operator.model)?;
+    let dual = ProjectedDual { operator: &contact.operator, coarse: &coarse };
+    let linear = dual.homogenised(&contact.constant);
+    let mut state = first_point(contact, &first_iterate(contact, start, usize::MAX, None)?, &coarse);
+    let mut history = Vec::new();
+    let mut aimed = *settings;
+    let (iterate, residual) = loop {
+        approximate(contact, &dual, &linear, &aimed, &mut state, &mut history)?;
+        let iterate = balanced(contact, &contact.operator.model.constraints.own_rows(&state.warm.x), &state.bounds)?;
+        let residual = contact.residual(&iterate);
+        let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
+        if residual.is_nan() || residual <= acceptable || spent {
+            break (iterate, residual);
         }
-        Ok((self.solution(iterate, residual, state.counts.fixed_point_steps), state.counts))
+        // Balancing the multipliers has cost more than the share kept for it.
+        aimed.tolerance = (TIGHTENING * aimed.tolerance).max(TIGHTEST_TOLERANCE);
+    };
+    if residual.is_nan() || residual > acceptable {
+        let factor = overall_contraction(&state.changes);
+        if factor > MAX_CONTRACTION {
+            return Err(ContactError::NoContraction { factor, history: state.changes });
+        }
+        return Err(ContactError::NotConverged {
+            solver: "successive approximations",
+            residual,
+            tolerance: settings.tolerance,
+            iterations: history.len(),
+            history,
+        });
     }
+    Ok((contact.solution(iterate, residual, state.counts.fixed_point_steps), state.counts))
+}
 
-    /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
-    fn approximate(
-        &self,
-        dual: &ProjectedDual<'_>,
-        linear: &[f64],
-        settings: &AugmentedLagrangianSettings,
-        state: &mut FixedPoint,
-        history: &mut Vec<f64>,
-    ) -> Result<(), ContactError> {
-        loop {
-            let solution = self.tresca(dual, linear, settings, state)?;
-            let residual = self.coulomb_residual(&solution);
-            history.push(residual);
-            Stage::Contact.reached(history.len(), residual)?;
-            let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
-            let target = TARGET_SHARE * settings.tolerance;
-            state.counts.fixed_point_steps += 1;
-            state.counts.outer += solution.outer;
-            state.counts.steps += solution.counts;
-            self.advance(state, solution)?;
-            let spent = history.len() >= settings.max_fixed_point_steps;
-            if residual <= target || exhausted || spent || !self.boundary.has_friction() {
-                return Ok(());
-            }
+/// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
+fn approximate(
+    contact: &TornContact<'_>,
+    dual: &ProjectedDual<'_>,
+    linear: &[f64],
+    settings: &AugmentedLagrangianSettings,
+    state: &mut FixedPoint,
+    history: &mut Vec<f64>,
+) -> Result<(), ContactError> {
+    loop {
+        let solution = tresca(contact, dual, linear, settings, state)?;
+        let residual = coulomb_residual(contact, &solution);
+        history.push(residual);
+        Stage::Contact.reached(history.len(), residual)?;
+        let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
+        let target = TARGET_SHARE * settings.tolerance;
+        state.counts.fixed_point_steps += 1;
+        state.counts.outer += solution.outer;
+        state.counts.steps += solution.counts;
+        advance(contact, state, solution)?;
+        let spent = history.len() >= settings.max_fixed_point_steps;
+        if residual <= target || exhausted || spent || !contact.boundary.has_friction() {
+            return Ok(());
         }
     }
+}
 
-    /// The first slip bounds and multipliers: those of an iterate. The QP's gradient is −w, its rigid part Cᵀμ.
-    fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
-        let multipliers = coarse.apply(&coarse.whole(&iterate.jumps)).into_iter().map(|entry| -entry).collect();
-        let warm = WarmStart { x: coarse.whole(&iterate.multipliers), multipliers, ..WarmStart::default() };
-        let bounds = self.slip_bounds(iterate.multipliers.contact());
-        FixedPoint { bounds, warm, changes: Vec::new(), counts: AugmentedLagrangianCounts::default() }
-    }
+/// The first slip bounds and multipliers: those of an iterate. The QP's gradient is −w, its rigid part Cᵀμ.
+fn first_point(contact: &TornContact<'_>, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
+    let multipliers = coarse.apply(&coarse.whole(&iterate.jumps)).into_iter().map(|entry| -entry).collect();
+    let warm = WarmStart { x: coarse.whole(&iterate.multipliers), multipliers, ..WarmStart::default() };
+    let bounds = slip_bounds(contact, iterate.multipliers.contact());
+    FixedPoint { bounds, warm, changes: Vec::new(), counts: AugmentedLagrangianCounts::default() }
+}
 
-    /// λ_N ≥ 0, |λ_T| ≤ Ψ.
-    fn feasible_set(&self, bounds: &[f64]) -> Result<SeparableSet, ContactError> {
-        let equality = self.operator.model.constraints.total_equality_count;
-        let mut blocks = Vec::with_capacity(2 * bounds.len());
-        for (point, &radius) in self.boundary.points.iter().zip(bounds) {
-            let index = equality + point.start;
-            blocks.push(Block::HalfLine { index, bound: 0.0 });
-            if point.tangents > 0 {
-                blocks.push(Block::Disc { first: index + 1, size: point.tangents, centre: [0.0; 2], radius });
-            }
+/// λ_N ≥ 0, |λ_T| ≤ Ψ.
+fn feasible_set(contact: &TornContact<'_>, bounds: &[f64]) -> Result<SeparableSet, ContactError> {
+    let equality = contact.operator.model.constraints.total_equality_count;
+    let mut blocks = Vec::with_capacity(2 * bounds.len());
+    for (point, &radius) in contact.boundary.points.iter().zip(bounds) {
+        let index = equality + point.start;
+        blocks.push(Block::HalfLine { index, bound: 0.0 });
+        if point.tangents > 0 {
+            blocks.push(Block::Disc { first: index + 1, size: point.tangents, centre: [0.0; 2], radius });
         }
-        Ok(SeparableSet::new(equality + self.boundary.row_count, blocks)?)
     }
+    Ok(SeparableSet::new(equality + contact.boundary.row_count, blocks)?)
+}
 
-    /// Solves the Tresca problem of the current slip bounds as far as they deserve.
-    fn tresca(
-        &self,
-        dual: &ProjectedDual<'_>,
-        linear: &[f64],
-        settings: &AugmentedLagrangianSettings,
-        state: &FixedPoint,
-    ) -> Result<SmalseSolution, ContactError> {
-        let (set, coarse) = (self.feasible_set(&state.bounds)?, dual.coarse);
-        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: coarse };
-        let mut solver = Smalse { program, preconditioner: None, limits: settings.qp };
-        let norm_h = solver.norm(&state.warm)?;
-        let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
-        let preconditioner = projected_preconditioner(&self.preconditioner, coarse, norm_h);
-        if settings.precondition {
-            solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
-        }
-        let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
-        let solution = solver.run(&warm, floor, &mut |progress| {
-            let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
-            let residual = self.coulomb_residual(progress);
-            let change = difference(&self.slip_bounds(self.split(&progress.warm.x).1), &state.bounds);
-            let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
-            residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
-        })?;
-        Ok(solution)
+/// Solves the Tresca problem of the current slip bounds as far as they deserve.
+fn tresca(
+    contact: &TornContact<'_>,
+    dual: &ProjectedDual<'_>,
+    linear: &[f64],
+    settings: &AugmentedLagrangianSettings,
+    state: &FixedPoint,
+) -> Result<SmalseSolution, ContactError> {
+    let (set, coarse) = (feasible_set(contact, &state.bounds)?, dual.coarse);
+    let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: coarse };
+    let mut solver = Smalse { program, preconditioner: None, limits: settings.qp };
+    let norm_h = solver.norm(&state.warm)?;
+    let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
+    let preconditioner = projected_preconditioner(&contact.preconditioner, coarse, norm_h);
+    if settings.precondition {
+        solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: contact.stiffness });
     }
+    let floor = INNER_SHARE * settings.tolerance * contact.load / contact.stiffness;
+    let solution = solver.run(&warm, floor, &mut |progress| {
+        let error = contact.stiffness * progress.reduced_gradient + progress.infeasibility;
+        let residual = coulomb_residual(contact, progress);
+        let change = difference(&slip_bounds(contact, split(contact, &progress.warm.x).1), &state.bounds);
+        let deserved = (settings.adaptivity * change).max(2.0 * floor * contact.stiffness);
+        residual <= TARGET_SHARE * settings.tolerance || (contact.boundary.has_friction() && error <= deserved)
+    })?;
+    Ok(solution)
+}
 
-    /// The rows of B_E and the packed contact rows of a vector of the QP solver.
-    fn split<'v>(&self, all: &'v [f64]) -> (&'v [f64], &'v [f64]) {
-        all.split_at(self.operator.model.constraints.total_equality_count)
-    }
+/// The rows of B_E and the packed contact rows of a vector of the QP solver.
+fn split<'v>(contact: &TornContact<'_>, all: &'v [f64]) -> (&'v [f64], &'v [f64]) {
+    all.split_at(contact.operator.model.constraints.total_equality_count)
+}
 
-    /// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
-    fn coulomb_residual(&self, solution: &SmalseSolution) -> f64 {
-        let (glued, opening) = self.split(&solution.gradient);
-        let jumps: Vec<f64> = opening.iter().map(|entry| -entry).collect();
-        let law = projection_residual(self.boundary, self.split(&solution.warm.x).1, &jumps, self.stiffness);
-        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(solution.infeasibility) / self.load
-    }
+/// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
+fn coulomb_residual(contact: &TornContact<'_>, solution: &SmalseSolution) -> f64 {
+    let (glued, opening) = split(contact, &solution.gradient);
+    let jumps: Vec<f64> = opening.iter().map(|entry| -entry).collect();
+    let law = projection_residual(contact.boundary, split(contact, &solution.warm.x).1, &jumps, contact.stiffness);
+    (contact.stiffness * norm(glued)).hypot(norm(&law)).hypot(solution.infeasibility) / contact.load
+}
 
-    /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
-    fn advance(&self, state: &mut FixedPoint, solution: SmalseSolution) -> Result<(), ContactError> {
-        let equality = self.operator.model.constraints.total_equality_count;
-        let bounds = self.slip_bounds(self.split(&solution.warm.x).1);
-        let change = difference(&bounds, &state.bounds);
-        if !change.is_finite() {
-            return Err(ContactError::NotFinite { what: "slip bound" });
-        }
-        state.warm = solution.warm;
-        for ((point, &new), &old) in self.boundary.points.iter().zip(&bounds).zip(&state.bounds) {
-            let range = equality + point.start..equality + point.start + point.row_count();
-            let rows = &mut state.warm.x[range];
-            if old > 0.0 && tangential_norm(rows) >= old * (1.0 - 1e-9) {
-                rows[1..].iter_mut().for_each(|entry| *entry *= new / old);
-            }
-        }
-        state.warm.image = None;
-        state.bounds = bounds;
-        state.changes.push(change / norm(&state.bounds).max(f64::MIN_POSITIVE));
-        state.counts.contraction = contraction(&state.changes);
-        if diverges(&state.changes) {
-            return Err(ContactError::NoContraction {
-                factor: state.counts.contraction,
-                history: state.changes.clone(),
-            });
-        }
-        Ok(())
+/// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
+fn advance(contact: &TornContact<'_>, state: &mut FixedPoint, solution: SmalseSolution) -> Result<(), ContactError> {
+    let equality = contact.operator.model.constraints.total_equality_count;
+    let bounds = slip_bounds(contact, split(contact, &solution.warm.x).1);
+    let change = difference(&bounds, &state.bounds);
+    if !change.is_finite() {
+        return Err(ContactError::NotFinite { what: "slip bound" });
     }
+    state.warm = solution.warm;
+    for ((point, &new), &old) in contact.boundary.points.iter().zip(&bounds).zip(&state.bounds) {
+        let range = equality + point.start..equality + point.start + point.row_count();
+        let rows = &mut state.warm.x[range];
+        if old > 0.0 && tangential_norm(rows) >= old * (1.0 - 1e-9) {
+            rows[1..].iter_mut().for_each(|entry| *entry *= new / old);
+        }
+    }
+    state.warm.image = None;
+    state.bounds = bounds;
+    state.changes.push(change / norm(&state.bounds).max(f64::MIN_POSITIVE));
+    state.counts.contraction = contraction(&state.changes);
+    if diverges(&state.changes) {
+        return Err(ContactError::NoContraction { factor: state.counts.contraction, history: state.changes.clone() });
+    }
+    Ok(())
 }
 
 /// The distance |a − b|₂.

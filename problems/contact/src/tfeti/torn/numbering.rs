@@ -132,7 +132,8 @@ fn mean<T>(points: &[Placed<T>]) -> [f64; 3] {
 }
 
 /// Divides points into so many groups across their longest extent, again and again: into halves, or, where the groups
-/// are equal, into as many parts as the smallest factor of their number, so that boxes of points are divided into boxes.
+/// are equal, into as many parts as the smallest factor of their number, so that boxes of points are divided into
+/// boxes.
 fn divide<T>(mut points: Vec<Placed<T>>, count: usize, groups: &mut Vec<Vec<Placed<T>>>) {
     if count <= 1 {
         return groups.push(points);

@@ -2,7 +2,7 @@
 
 use contact::WorkEstimate;
 use contact::contact_shape::ContactState;
-use contact::direct::{CompliantContact, DirectSolver};
+use contact::direct::{CompliantContact, DirectSolver, by_cone_programs};
 use contact::equilibrium::{ContactForces, ContactProblem, ContactRows, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
@@ -118,7 +118,7 @@ impl Examined {
         let solver = DirectSolver::new(Arc::clone(&self.problem));
         let contact = solver.and_then(|solver| solver.contact(&self.controls));
         let mut contact = contact.map_err(|error| error.to_string())?;
-        let found = contact.by_cone_programs(TOLERANCE, usize::MAX);
+        let found = by_cone_programs(&mut contact, TOLERANCE, usize::MAX);
         let unknowns = found.unknowns.ok_or_else(|| format!("{} cone programs led to no state", found.count))?;
         let (forces, _) = contact.dimensional(&unknowns);
         let normal: Vec<f64> = self.problem.boundary.points.iter().map(|point| forces[point.start].max(0.0)).collect();
