@@ -6,7 +6,7 @@
 //! F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{Configuration, ContactProblem, ContactSolver};
+use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, TangentsOf};
 use contact::scene::signorini;
 use contact::tfeti::{DualOperator, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
@@ -53,7 +53,8 @@ fn derivatives(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     print(size, "state, cold, to 1e-8", cold, cold + adjoint);
     print(size, "adjoint and shape derivative", adjoint, cold + adjoint);
     for (what, tolerance) in [("tangents to 1e-2", 1e-2), ("tangents to 1e-4", 1e-4), ("tangents to rounding", 0.0)] {
-        let seconds = median(|| shape.contact_solver().tangents(&state.solution, &changes, tolerance));
+        let seconds =
+            median(|| shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Contact, tolerance));
         print(size, what, seconds, cold + adjoint);
     }
     Ok(())

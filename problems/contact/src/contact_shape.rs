@@ -11,7 +11,7 @@
 
 use crate::cost::PressureOutputs;
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, ValueError,
+    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, TangentsOf, ValueError,
 };
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
@@ -286,7 +286,10 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         let (problem, outputs) = (self.problem(), self.outputs(state));
         let unit = |k: usize| (0..control.len()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
         let changes: Vec<Vec<f64>> = (0..control.len()).map(unit).collect();
-        let tangents = self.solver.tangents(&state.solution, &changes, accuracy.tolerance()).map_err(oracle)?;
+        let tangents = self
+            .solver
+            .tangents(&state.solution, &changes, TangentsOf::Contact, accuracy.tolerance())
+            .map_err(oracle)?;
         state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
         let (points, areas) = (&problem.boundary.points, state.rows.areas());
         let velocities = problem.map.velocities(&changes);

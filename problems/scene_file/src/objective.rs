@@ -189,8 +189,8 @@ impl Objective {
                 PressureMeasure::Norm { .. } | PressureMeasure::Peak => false,
             },
             Self::Field(measure) => match measure {
-                FieldMeasure::Compliance => true,
-                FieldMeasure::StressNorm { .. } => false,
+                FieldMeasure::Compliance | FieldMeasure::Displacement { .. } => true,
+                FieldMeasure::StressNorm { .. } | FieldMeasure::PeakStress { .. } => false,
             },
         }
     }
@@ -246,5 +246,5 @@ fn region(section: Option<&RegionSection>) -> Result<Region, SceneError> {
         BodyName::Lower => 0,
         BodyName::Upper => 1,
     });
-    Ok(Region { lower, upper, body, volume: section.volume })
+    Ok(Region { lower, upper, body, volume: section.volume, face: None })
 }

@@ -1,7 +1,8 @@
-//! Costs of the displacements: stress norm in a region, compliance; method.md (3.7), (3.8), (5.5) to (5.7).
+//! Costs of the displacements: stress norm in a region, compliance, largest stress, largest or smallest displacement;
+//! method.md (3.7), (3.8), (5.5) to (5.7).
 //!
 //! ```text
-//! J = ((1/V₀) Σ_e V_e σ_vM,e^p)^{1/p}      or      J = f·u            l = ∂J/∂u: a load in the adjoint problem
+//! J = ((1/V₀) Σ_e V_e σ_vM,e^p)^{1/p},     J = f·u,     J = max of points         l = ∂J/∂u: a load in the adjoint problem
 //! ```
 //! What J depends on the shape at fixed displacements is ∇₁J of the framework: volumes and stresses of cells whose
 //! nodes move, and loads that depend on the shape. Only the lower body changes its shape.
@@ -9,28 +10,15 @@
 use crate::body::Body;
 use crate::body::elasticity::CellNodes;
 use crate::body::loads::{load_sensitivities, nodal_forces};
-use crate::cost::region::{Region, RegionCells};
+use crate::cost::extreme::{Extreme, Points};
+use crate::cost::field_measure::FieldMeasure;
+use crate::cost::field_piece::{FieldGradient, FieldPiece};
+use crate::cost::region::RegionCells;
 use crate::equilibrium::{ContactProblem, ContactState, SolvedBody};
 use crate::error::SceneError;
 use crate::shape::ShapeMap;
 use nonsmooth::{Cost, CostGradient, Vector};
-use rayon::prelude::*;
 use std::sync::Arc;
-
-/// A function of the displacements of the bodies.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FieldMeasure {
-    /// ((1/V₀) Σ V_e σ_vM,e^p)^{1/p}, MPa: a mean of the von Mises stress at the centres of the cells of a region, the
-    /// closer to its largest value the larger p is. V₀ is the volume of the region at the start.
-    StressNorm {
-        /// The cells that count.
-        region: Region,
-        /// The exponent p > 1.
-        exponent: f64,
-    },
-    /// f·u, the work of all loads on the displacements, N·mm.
-    Compliance,
-}
 
 /// J(α, u) as a measure of the displacements, for states of a map
 /// [with displacements](crate::contact_shape::ContactShape::with_displacements). The value at another state is not a
@@ -38,55 +26,82 @@ pub enum FieldMeasure {
 #[derive(Debug, Clone)]
 pub struct FieldCost {
     measure: FieldMeasure,
-    /// Cells of the region per body; none for the compliance.
-    cells: Vec<Vec<usize>>,
-    /// The volume V₀ of the region, mm³.
-    volume: f64,
+    function: Function,
     bodies: Arc<[Body]>,
     map: Arc<ShapeMap>,
     /// Entries of a dual before those of the displacements.
     row_count: usize,
 }
 
-/// The derivatives of J at a state.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FieldGradient {
-    /// ∂J/∂u, three entries per node of every body, lower first, unit of J per mm.
-    pub displacements: Vec<f64>,
-    /// ∂J/∂x per node of the lower body at fixed displacements, unit of J per mm; 0 for nodes that no control moves.
-    pub positions: Vec<[f64; 3]>,
+/// A measure on the mesh of a problem.
+#[derive(Debug, Clone)]
+enum Function {
+    StressNorm { cells: RegionCells, exponent: f64 },
+    Compliance,
+    Extreme(Extreme),
 }
 
 impl FieldCost {
-    /// The cost on the bodies of a problem.
+    /// The cost on the bodies of a problem, as the objective of a scene.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, and as [`Region::cells`].
+    /// As [`FieldCost::named`].
     pub fn new(measure: FieldMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
-        let (mut cells, mut volume) = (Vec::new(), 1.0);
-        if let FieldMeasure::StressNorm { region, exponent } = &measure {
-            let valid = *exponent > 1.0 && exponent.is_finite();
-            SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
-            RegionCells { cells, volume } = region.cells(problem)?;
-        }
+        Self::named("objective", measure, problem)
+    }
+
+    /// The cost on the bodies of a problem; `place`: what messages call the table that has the measure.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, for an axis beyond 2, for the smallest length
+    /// of displacements, for a region of held cells alone that leaves them out, and as [`Region::cells`] and
+    /// [`Region::nodes`](crate::cost::Region::nodes).
+    ///
+    /// [`Region::cells`]: crate::cost::Region::cells
+    pub fn named(place: &str, measure: FieldMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
+        measure.check(place)?;
         let (bodies, map) = (Arc::clone(&problem.bodies), Arc::clone(&problem.map));
-        Ok(Self { measure, cells, volume, bodies, map, row_count: problem.boundary.row_count })
+        let extreme = |points, least| {
+            let (bodies, map) = (Arc::clone(&problem.bodies), Arc::clone(&problem.map));
+            Function::Extreme(Extreme { points, least, bodies, map })
+        };
+        let function = match &measure {
+            FieldMeasure::StressNorm { region, exponent } => {
+                Function::StressNorm { cells: region.cells(place, problem)?, exponent: *exponent }
+            }
+            FieldMeasure::Compliance => Function::Compliance,
+            FieldMeasure::PeakStress { region, without_held } => {
+                let mut cells = region.cells(place, problem)?;
+                if *without_held {
+                    leave_out_held(place, &bodies, &mut cells)?;
+                }
+                extreme(Points::Stresses(cells), false)
+            }
+            FieldMeasure::Displacement { region, component, least } => {
+                let nodes = region.nodes(place, problem)?;
+                extreme(Points::Displacements { nodes, component: *component }, *least)
+            }
+        };
+        Ok(Self { measure, function, bodies, map, row_count: problem.boundary.row_count })
     }
 
     /// The unit of the value.
     pub fn unit(&self) -> &'static str {
-        match self.measure {
-            FieldMeasure::StressNorm { .. } => "MPa",
-            FieldMeasure::Compliance => "N mm",
-        }
+        self.measure.unit()
+    }
+
+    /// Whether J has a gradient wherever the contact state has one; false for maxima and minima over points.
+    pub fn is_smooth(&self) -> bool {
+        self.measure.is_smooth()
     }
 
     /// J of solved bodies, lower first.
     pub fn value_of(&self, bodies: &[SolvedBody]) -> f64 {
-        match &self.measure {
-            FieldMeasure::StressNorm { exponent, .. } => {
-                let stresses =
-                    self.map_cells(bodies, |cell, shear_modulus, u| (cell.von_mises(shear_modulus, u), cell.volume()));
+        match &self.function {
+            Function::StressNorm { cells, exponent } => {
+                let stresses = cells.map(&self.bodies, bodies, |cell, shear_modulus, u| {
+                    (cell.von_mises(shear_modulus, u), cell.volume())
+                });
                 let largest = stresses.iter().flatten().map(|(stress, _)| *stress).fold(0.0, f64::max);
                 if largest == 0.0 {
                     return 0.0;
@@ -94,9 +109,9 @@ impl FieldCost {
                 // Relative to the largest stress, so that no power leaves the range of doubles.
                 let terms =
                     stresses.iter().flatten().map(|(stress, volume)| volume * (stress / largest).powf(*exponent));
-                largest * (terms.sum::<f64>() / self.volume).powf(1.0 / exponent)
+                largest * (terms.sum::<f64>() / cells.volume).powf(1.0 / exponent)
             }
-            FieldMeasure::Compliance => {
+            Function::Compliance => {
                 let works = bodies.iter().zip(&*self.bodies).map(|(solved, body)| {
                     let forces = nodal_forces(body, &solved.positions).into_iter();
                     let work = |(node, force): (u32, [f64; 3])| dot(force, solved.displacement[node as usize]);
@@ -104,51 +119,61 @@ impl FieldCost {
                 });
                 works.sum()
             }
+            Function::Extreme(extreme) => extreme.value(bodies),
         }
     }
 
-    /// The derivatives of J at solved bodies, lower first.
+    /// The derivatives of J at solved bodies, lower first: of a maximum or minimum over points those of the first
+    /// extreme one, which is one subgradient of a maximum of such functions.
     pub fn gradient_of(&self, bodies: &[SolvedBody]) -> FieldGradient {
-        let mut gradient = FieldGradient {
-            displacements: vec![0.0; 3 * bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>()],
-            positions: vec![[0.0; 3]; bodies.first().map_or(0, |body| body.mesh.node_count())],
-        };
-        match &self.measure {
-            FieldMeasure::StressNorm { exponent, .. } => self.add_stress_gradient(bodies, *exponent, &mut gradient),
-            FieldMeasure::Compliance => self.add_compliance_gradient(bodies, &mut gradient),
+        let displacement_count = 3 * bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>();
+        let node_count = bodies.first().map_or(0, |body| body.mesh.node_count());
+        let zero = FieldPiece { value: 0.0, displacements: Vec::new(), positions: Vec::new() };
+        if let Function::Extreme(extreme) = &self.function {
+            return extreme.first(bodies).unwrap_or(zero).gradient(displacement_count, node_count);
+        }
+        let mut gradient = zero.gradient(displacement_count, node_count);
+        match &self.function {
+            Function::StressNorm { cells, exponent } => {
+                self.add_stress_gradient(bodies, cells, *exponent, &mut gradient)
+            }
+            Function::Compliance => self.add_compliance_gradient(bodies, &mut gradient),
+            Function::Extreme(_) => {}
         }
         gradient
     }
 
-    /// What `compute` makes of every cell of the region, per body: given its nodes, shear modulus and displacements.
-    fn map_cells<T: Send>(
-        &self,
-        bodies: &[SolvedBody],
-        compute: impl Fn(&CellNodes<f64>, f64, &[f64]) -> T + Sync,
-    ) -> Vec<Vec<T>> {
-        let parts = self.cells.iter().zip(bodies).zip(&*self.bodies);
-        let of_body = |((cells, solved), body): ((&Vec<usize>, &SolvedBody), &Body)| {
-            let of_cell = |&cell: &usize| {
-                let u = body.mesh.cell_values(cell, &solved.displacement);
-                compute(&body.mesh.cell_nodes(cell, &solved.positions), body.solid.material(cell).shear_modulus(), &u)
-            };
-            cells.par_iter().map(of_cell).collect()
-        };
-        parts.map(of_body).collect()
+    /// The smooth functions of which J is made near solved bodies, lower first. One piece, J itself, for smooth
+    /// measures. For a maximum the points whose values are within a tenth of it, at most 200, the largest first; for a
+    /// minimum those within a tenth of the largest absolute value above it, the smallest first. Values and derivatives
+    /// have the sign of the displacements, for a minimum too: J is the smallest of its pieces then.
+    pub fn pieces_of(&self, bodies: &[SolvedBody]) -> Vec<FieldPiece> {
+        match &self.function {
+            Function::Extreme(extreme) => extreme.pieces(bodies),
+            Function::StressNorm { .. } | Function::Compliance => {
+                vec![FieldPiece::of(self.value_of(bodies), &self.gradient_of(bodies))]
+            }
+        }
     }
 
     /// With r = σ/σ_max, s = Σ V r^p/V₀: dJ = s^{1/p−1}/V₀ Σ (V r^{p−1} dσ + σ_max/p r^p dV).
-    fn add_stress_gradient(&self, bodies: &[SolvedBody], exponent: f64, gradient: &mut FieldGradient) {
-        let cells = self.map_cells(bodies, CellNodes::stressed);
+    fn add_stress_gradient(
+        &self,
+        bodies: &[SolvedBody],
+        region: &RegionCells,
+        exponent: f64,
+        gradient: &mut FieldGradient,
+    ) {
+        let cells = region.map(&self.bodies, bodies, CellNodes::stressed);
         let largest = cells.iter().flatten().map(|cell| cell.stress).fold(0.0, f64::max);
         if largest == 0.0 {
             return;
         }
         let terms = cells.iter().flatten().map(|cell| cell.volume * (cell.stress / largest).powf(exponent));
-        let sum = terms.sum::<f64>() / self.volume;
-        let factor = sum.powf(1.0 / exponent - 1.0) / self.volume;
+        let sum = terms.sum::<f64>() / region.volume;
+        let factor = sum.powf(1.0 / exponent - 1.0) / region.volume;
         let mut first = 0;
-        for (number, (places, cells)) in self.cells.iter().zip(&cells).enumerate() {
+        for (number, (places, cells)) in region.cells.iter().zip(&cells).enumerate() {
             let mesh = &bodies[number].mesh;
             for (place, cell) in places.iter().zip(cells) {
                 let relative = (cell.stress / largest).powf(exponent - 1.0);
@@ -191,6 +216,17 @@ impl FieldCost {
             }
         }
     }
+}
+
+/// Takes cells off that have a node held by a support of their body.
+fn leave_out_held(place: &str, bodies: &[Body], cells: &mut RegionCells) -> Result<(), SceneError> {
+    for (cells, body) in cells.cells.iter_mut().zip(bodies) {
+        let held = body.held_nodes();
+        cells.retain(|&cell| body.mesh.cell(cell).nodes.iter().all(|node| held.binary_search(node).is_err()));
+    }
+    let any = cells.cells.iter().any(|cells| !cells.is_empty());
+    let allowed = "false: supports hold a node of every cell of the region";
+    SceneError::require(any, format!("{place}.without_held"), true, allowed)
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

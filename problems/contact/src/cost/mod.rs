@@ -5,14 +5,19 @@
 //! displacements:  J(α, u), whose gradient ∂J/∂u is a load in the adjoint problem               method.md (3.7), (3.8), (5.5)
 //! ```
 
+mod extreme;
 mod field;
+mod field_measure;
+mod field_piece;
 mod limit;
 mod outputs;
 mod pressure;
 mod pressure_measure;
 mod region;
 
-pub use field::{FieldCost, FieldGradient, FieldMeasure};
+pub use field::FieldCost;
+pub use field_measure::FieldMeasure;
+pub use field_piece::{FieldGradient, FieldPiece};
 pub use limit::{Limit, LimitSide, LimitedQuantity, VolumeLimits};
 pub use outputs::PressureOutputs;
 pub use pressure::PressureCost;

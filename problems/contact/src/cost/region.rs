@@ -1,9 +1,12 @@
-//! A part of the bodies: the cells whose centres lie in a box, or those of a named volume.
+//! A part of the bodies: the cells whose centres lie in a box, those of a named volume, or the nodes of a named face.
 
 use crate::body::Body;
-use crate::equilibrium::ContactProblem;
+use crate::body::elasticity::CellNodes;
+use crate::body::mesh::bounding_box;
+use crate::equilibrium::{ContactProblem, SolvedBody};
 use crate::error::SceneError;
 use crate::names::find;
+use rayon::prelude::*;
 
 /// A part of one body or of all.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +19,9 @@ pub struct Region {
     pub body: Option<usize>,
     /// The name of a volume of the mesh; none for all volumes.
     pub volume: Option<String>,
+    /// The name of a face of the mesh, whose nodes alone belong to the region; none for whole cells. Stresses belong to
+    /// cells: their regions have no face.
+    pub face: Option<String>,
 }
 
 /// The cells of a region.
@@ -30,57 +36,157 @@ pub struct RegionCells {
 /// Distance over the size of the bodies at which a centre still counts as inside a box: rounding of its coordinates.
 const ROUNDING: f64 = 1e-12;
 
+impl RegionCells {
+    /// What `compute` makes of every cell, per body, for solved bodies with what does not depend on the shape: given its
+    /// nodes, shear modulus and displacements.
+    pub(super) fn map<T: Send>(
+        &self,
+        bodies: &[Body],
+        solved: &[SolvedBody],
+        compute: impl Fn(&CellNodes<f64>, f64, &[f64]) -> T + Sync,
+    ) -> Vec<Vec<T>> {
+        let parts = self.cells.iter().zip(solved).zip(bodies);
+        let of_body = |((cells, solved), body): ((&Vec<usize>, &SolvedBody), &Body)| {
+            let of_cell = |&cell: &usize| {
+                let u = body.mesh.cell_values(cell, &solved.displacement);
+                compute(&body.mesh.cell_nodes(cell, &solved.positions), body.solid.material(cell).shear_modulus(), &u)
+            };
+            cells.par_iter().map(of_cell).collect()
+        };
+        parts.map(of_body).collect()
+    }
+}
+
 impl Region {
     /// All of all bodies.
-    pub const WHOLE: Self = Self { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None, volume: None };
+    pub const WHOLE: Self =
+        Self { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None, volume: None, face: None };
 
     /// The cells of the named volume whose centres lie in the box at the start of the scene: no cell enters or leaves
-    /// the region as the shape changes.
+    /// the region as the shape changes. `place`: what messages call the table that has the region.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for a volume that no
-    /// mesh has.
-    pub fn cells(&self, problem: &ContactProblem) -> Result<RegionCells, SceneError> {
+    /// [`SceneError::OutOfRange`] if there is none, for a region with a face, for a body that the scene does not have,
+    /// and for a volume that no mesh has.
+    pub fn cells(&self, place: &str, problem: &ContactProblem) -> Result<RegionCells, SceneError> {
+        if let Some(face) = &self.face {
+            let allowed = "no face where stresses are measured, which belong to whole cells";
+            return Err(SceneError::out_of_range(format!("{place}.region.face"), format!("\"{face}\""), allowed));
+        }
+        self.check(place, problem)?;
         let positions = problem.start_positions();
-        if let Some(body) = self.body.filter(|body| *body >= problem.bodies.len()) {
-            let value = if body == 1 { "upper" } else { "unknown" };
-            let allowed = "a body of the scene, which has no upper one";
-            return Err(SceneError::out_of_range("objective.body", value, allowed));
-        }
-        if let Some(volume) = &self.volume {
-            let names = problem.bodies.iter().flat_map(|body| body.mesh.volumes());
-            find("objective.volume", volume, names.map(String::as_str))?;
-        }
-        let coordinates = || positions.iter().flat_map(|nodes| nodes.as_flattened());
-        let slack = ROUNDING * coordinates().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let slack = slack(&positions);
         let mut found = RegionCells { cells: vec![Vec::new(); positions.len()], volume: 0.0 };
+        let mut centres = Vec::new();
         for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
             for cell in (0..body.mesh.cell_count()).filter(|&cell| self.may_hold(number, body, cell)) {
                 let centre = body.mesh.centre(cell, positions);
-                let inside =
-                    |axis: usize| centre[axis] >= self.lower[axis] - slack && centre[axis] <= self.upper[axis] + slack;
-                if (0..3).all(inside) {
+                centres.push(centre);
+                if self.surrounds(centre, slack) {
                     found.cells[number].push(cell);
                     found.volume += body.mesh.cell_nodes(cell, positions).volume();
                 }
-                for axis in 0..3 {
-                    least[axis] = least[axis].min(centre[axis]);
-                    most[axis] = most[axis].max(centre[axis]);
+            }
+        }
+        match found.cells.iter().all(Vec::is_empty) {
+            true => Err(self.without(place, "centre of a cell", &centres)),
+            false => Ok(found),
+        }
+    }
+
+    /// The nodes of every body, lower first, each ascending: those of the [cells](Self::cells), or with a face those of
+    /// its nodes that lie in the box at the start and belong to a cell of the volume.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for a volume or a face
+    /// that no mesh has.
+    pub fn nodes(&self, place: &str, problem: &ContactProblem) -> Result<Vec<Vec<u32>>, SceneError> {
+        let mut nodes: Vec<Vec<u32>> = match &self.face {
+            Some(face) => self.face_nodes(place, face, problem)?,
+            None => {
+                let cells = self.cells(place, problem)?.cells;
+                let nodes_of = |(cells, body): (&Vec<usize>, &Body)| {
+                    cells.iter().flat_map(|&cell| body.mesh.cell(cell).nodes).copied().collect()
+                };
+                cells.iter().zip(&*problem.bodies).map(nodes_of).collect()
+            }
+        };
+        for nodes in &mut nodes {
+            nodes.sort_unstable();
+            nodes.dedup();
+        }
+        Ok(nodes)
+    }
+
+    fn face_nodes(&self, place: &str, face: &str, problem: &ContactProblem) -> Result<Vec<Vec<u32>>, SceneError> {
+        self.check(place, problem)?;
+        let bodies = || problem.bodies.iter().enumerate().filter(|(number, _)| self.is_of(*number));
+        let names = bodies().flat_map(|(_, body)| body.mesh.faces().keys());
+        find(&format!("{place}.region.face"), face, names.map(String::as_str))?;
+        let positions = problem.start_positions();
+        let slack = slack(&positions);
+        let mut found = vec![Vec::new(); positions.len()];
+        let mut places = Vec::new();
+        for (number, body) in bodies() {
+            let faces = body.mesh.faces().get(face).into_iter().flatten();
+            for node in faces
+                .filter(|face| self.may_hold(number, body, face.cell as usize))
+                .flat_map(|face| body.mesh.face_nodes(*face))
+            {
+                let x = positions[number][node as usize];
+                places.push(x);
+                if self.surrounds(x, slack) {
+                    found[number].push(node);
                 }
             }
         }
-        if found.cells.iter().all(Vec::is_empty) {
-            let value = format!("{:?} to {:?}", self.lower, self.upper);
-            let allowed = format!("a box that holds the centre of a cell; they lie between {least:?} and {most:?} mm");
-            return Err(SceneError::out_of_range("objective.region", value, allowed));
+        match found.iter().all(Vec::is_empty) {
+            true => Err(self.without(place, "node of the face", &places)),
+            false => Ok(found),
         }
-        Ok(found)
+    }
+
+    /// Checks body and volume.
+    fn check(&self, place: &str, problem: &ContactProblem) -> Result<(), SceneError> {
+        if let Some(body) = self.body.filter(|body| *body >= problem.bodies.len()) {
+            let value = if body == 1 { "upper" } else { "unknown" };
+            let allowed = "a body of the scene, which has no upper one";
+            return Err(SceneError::out_of_range(format!("{place}.region.body"), value, allowed));
+        }
+        if let Some(volume) = &self.volume {
+            let names = problem.bodies.iter().flat_map(|body| body.mesh.volumes());
+            find(&format!("{place}.region.volume"), volume, names.map(String::as_str))?;
+        }
+        Ok(())
+    }
+
+    /// Whether a body belongs to the region.
+    fn is_of(&self, number: usize) -> bool {
+        self.body.is_none_or(|own| own == number)
     }
 
     /// Whether a cell belongs to the body and the volume of the region.
     fn may_hold(&self, number: usize, body: &Body, cell: usize) -> bool {
         let name = &body.mesh.volumes()[body.mesh.volume_of(cell)];
-        self.body.is_none_or(|own| own == number) && self.volume.as_ref().is_none_or(|volume| volume == name)
+        self.is_of(number) && self.volume.as_ref().is_none_or(|volume| volume == name)
     }
+
+    /// Whether a point lies in the box.
+    fn surrounds(&self, x: [f64; 3], slack: f64) -> bool {
+        (0..3).all(|axis| x[axis] >= self.lower[axis] - slack && x[axis] <= self.upper[axis] + slack)
+    }
+
+    /// The refusal of a box without any of some places.
+    fn without(&self, place: &str, what: &str, places: &[[f64; 3]]) -> SceneError {
+        let value = format!("{:?} to {:?}", self.lower, self.upper);
+        let [least, most] = bounding_box(places);
+        let allowed = format!("a box that holds the {what}; they lie between {least:?} and {most:?} mm");
+        SceneError::out_of_range(format!("{place}.region"), value, allowed)
+    }
+}
+
+/// By how much a point may lie outside of a box that still holds it, mm.
+fn slack(positions: &[impl AsRef<Vec<[f64; 3]>>]) -> f64 {
+    let coordinates = positions.iter().flat_map(|nodes| nodes.as_ref().as_flattened());
+    ROUNDING * coordinates.fold(0.0, |largest: f64, x| largest.max(x.abs()))
 }

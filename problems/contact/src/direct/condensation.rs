@@ -34,10 +34,10 @@ pub struct CondensedBody {
     pub(crate) schur: Mat<f64>,
     /// f̂_c, the loads condensed onto the contact dofs, N.
     pub(crate) load: Vec<f64>,
-    factor: NumericFactor,
+    pub(super) factor: NumericFactor,
     /// The loads over the whole body, N; 0 at held dofs.
     pub(super) full_load: Vec<f64>,
-    shift: f64,
+    pub(super) shift: f64,
 }
 
 impl CondensationPattern {

@@ -13,6 +13,7 @@ mod cone_programs;
 mod continuation;
 mod diagnosis;
 mod displacement_load;
+mod displacement_tangents;
 mod force_rounding;
 mod newton;
 mod recovery;

@@ -15,6 +15,16 @@ use crate::equilibrium::{RowChange, RowSensitivities};
 use crate::shape::Velocities;
 use faer::Mat;
 
+/// What some changes of the shape do to the contact problem, one column or vector per change.
+pub(super) struct ShapeLoads {
+    /// Forces on the contact dofs of every body, N.
+    pub contact: Vec<Mat<f64>>,
+    /// Those among them that turned contact rows cause, N.
+    pub turned: Vec<Mat<f64>>,
+    /// ∂B u − ∂g over the packed rows, mm.
+    pub approaches: Vec<Vec<f64>>,
+}
+
 impl DirectSolver {
     /// ∂J/∂x per node of the lower body, from its displacements u and their adjoint p.
     pub(super) fn shape_derivative(
@@ -49,41 +59,43 @@ impl DirectSolver {
         result
     }
 
-    /// Forces on the contact dofs of every body, N, one column per field of velocities, and ∂B u − ∂g over the rows.
-    pub(super) fn shape_loads(
-        &self,
-        state: &DirectState,
-        velocities: &Velocities<'_>,
-    ) -> (Vec<Mat<f64>>, Vec<Vec<f64>>) {
-        let (problem, contact) = (&self.problem, &state.contact);
-        let of_column = |column| contact.rows.changes(&problem.boundary, velocities, column);
-        let changes: Vec<Vec<RowChange>> = (0..velocities.count()).map(of_column).collect();
-        let (body, piece) = (&problem.bodies[0], &self.patterns[0].piece);
+    /// −∂(K u − f) over the lower body in the coordinates of its nodes, 0 at held dofs, N, one column per field of
+    /// velocities.
+    pub(super) fn shape_forces(&self, state: &DirectState, velocities: &Velocities<'_>) -> Mat<f64> {
+        let (body, piece) = (&self.problem.bodies[0], &self.patterns[0].piece);
         let mut forces = shape_forces(body, piece, &state.positions[0], state.displacement(0), velocities);
         let axes = &self.patterns[0].axes;
         forces.iter_mut().for_each(|forces| axes.free_forces(forces));
-        let columns = Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof]);
-        let mut loads = vec![contact.bodies[0].body.condensed.condense_loads(columns)];
-        let sizes = contact.bodies[1..].iter().map(|body| body.body.free.len());
-        loads.extend(sizes.map(|size| Mat::zeros(size, velocities.count())));
-        let turned = !problem.geometry.is_fixed();
-        let u = if turned { contact_values(contact, &state.contact_displacements()) } else { Vec::new() };
+        Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof])
+    }
+
+    /// What fields of velocities do to the contact problem, given their [`shape_forces`](Self::shape_forces).
+    pub(super) fn shape_loads(&self, state: &DirectState, velocities: &Velocities<'_>, forces: Mat<f64>) -> ShapeLoads {
+        let (problem, contact) = (&self.problem, &state.contact);
+        let of_column = |column| contact.rows.changes(&problem.boundary, velocities, column);
+        let changes: Vec<Vec<RowChange>> = (0..velocities.count()).map(of_column).collect();
+        let sizes = contact.bodies.iter().map(|body| body.body.free.len());
+        let mut turned: Vec<Mat<f64>> = sizes.map(|size| Mat::zeros(size, velocities.count())).collect();
+        let turns = !problem.geometry.is_fixed();
+        let u = if turns { contact_values(contact, &state.contact_displacements()) } else { Vec::new() };
         let mut approaches = Vec::with_capacity(changes.len());
         for (column, changes) in changes.iter().enumerate() {
             let mut approach = vec![0.0; problem.boundary.row_count];
             for (index, (point, change)) in problem.boundary.points.iter().zip(changes).enumerate() {
                 approach[point.start] -= change.gap;
-                if turned {
+                if turns {
                     let rows = point.rows().zip(&change.directions);
                     rows.for_each(|(row, d)| approach[row] += (0..3).map(|axis| d[axis] * u[index][axis]).sum::<f64>());
                 }
             }
             approaches.push(approach);
-            if turned {
-                add_turned_forces(contact, &state.solution.forces, changes, &mut loads, column);
+            if turns {
+                add_turned_forces(contact, &state.solution.forces, changes, &mut turned, column);
             }
         }
-        (loads, approaches)
+        let mut on_contact = turned.clone();
+        on_contact[0] += contact.bodies[0].body.condensed.condense_loads(forces);
+        ShapeLoads { contact: on_contact, turned, approaches }
     }
 }
 

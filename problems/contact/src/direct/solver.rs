@@ -8,15 +8,16 @@ use crate::direct::continuation::Reached;
 use crate::direct::continuation::equilibrium;
 use crate::direct::diagnosis::{diagnose, estimate_contraction};
 use crate::direct::displacement_load::CondensedLoad;
+use crate::direct::displacement_tangents::displacement_tangents;
 use crate::direct::force_rounding::change_of_forces;
 use crate::direct::newton::FLOOR_REACHED;
-use crate::direct::tangents::tangents;
+use crate::direct::tangents::{CondensedTangents, tangents};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
     Configuration, ContactBoundary, ContactForces, ContactPoint, ContactProblem, ContactSolver, ContactState,
     ContactWarmStart, Diagnosis, Kink, Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents,
-    ValueError, Work,
+    TangentsOf, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
@@ -259,17 +260,30 @@ impl ContactSolver for DirectSolver {
         Ok(Sensitivities { positions, applications: 0, adjoint_seconds, shape_seconds, value_error })
     }
 
-    fn tangents(&self, state: &DirectState, changes: &[Vec<f64>], _tolerance: f64) -> Result<Tangents, ContactError> {
+    fn tangents(
+        &self,
+        state: &DirectState,
+        changes: &[Vec<f64>],
+        of: TangentsOf,
+        _tolerance: f64,
+    ) -> Result<Tangents, ContactError> {
         self.check(state)?;
         self.problem.check_changes(changes)?;
         let velocities = self.problem.map.velocities(changes);
         if state.load == 0.0 {
-            return Ok(Tangents::at_rest(&self.problem, &state.contact.rows, &velocities));
+            return Ok(Tangents::at_rest(&self.problem, &state.contact.rows, &velocities, of));
         }
         Stage::Adjoint.enter()?;
-        let (loads, approaches) = self.shape_loads(state, &velocities);
-        let tangents = tangents(&state.contact, &state.solution.linearizations, &loads, &approaches);
-        let entries = tangents.forces.iter().chain(&tangents.openings).flatten();
+        let forces = self.shape_forces(state, &velocities);
+        // Condensing them takes their place, so that what needs them again has a copy.
+        let kept = (of == TangentsOf::Displacements).then(|| forces.clone());
+        let loads = self.shape_loads(state, &velocities, forces);
+        let linearizations = &state.solution.linearizations;
+        let mut found = tangents(&state.contact, linearizations, &loads.contact, &loads.approaches);
+        found.tangents.displacements = kept.map(|forces| displacement_tangents(&state.contact, forces, &loads, &found));
+        let CondensedTangents { tangents, .. } = found;
+        let displacements = tangents.displacements.iter().flatten();
+        let entries = tangents.forces.iter().chain(&tangents.openings).chain(displacements).flatten();
         if entries.copied().any(|entry| !entry.is_finite()) {
             return Err(ContactError::NotFinite { what: "tangents of the condensed state" });
         }

@@ -18,6 +18,14 @@ use crate::linear::vector::{dot, norm};
 use faer::Mat;
 use nalgebra::DVector;
 
+/// Tangents of the condensed problem.
+pub(super) struct CondensedTangents {
+    /// Forces and openings.
+    pub tangents: Tangents,
+    /// δa per change, dimensionless.
+    pub amplitudes: Vec<Vec<f64>>,
+}
+
 /// Tangents at given derivatives, for forces on the contact dofs of every body (N, one column per change) and
 /// ∂B u − ∂g over the packed rows of every change, mm.
 pub(super) fn tangents(
@@ -25,7 +33,7 @@ pub(super) fn tangents(
     linearizations: &[Linearization],
     contact_loads: &[Mat<f64>],
     approaches: &[Vec<f64>],
-) -> Tangents {
+) -> CondensedTangents {
     let boundary = &contact.problem.boundary;
     let (count, motions) = (contact.row_count(), contact.resultant.len());
     let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);
@@ -53,7 +61,9 @@ pub(super) fn tangents(
         right[size..].copy_from_slice(resultant);
     }
     let (solution, residual) = refined(&DenseLu::new(&sprung), &active.matrix, right);
-    let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual, applications: 0 };
+    let (forces, openings) = (Vec::new(), Vec::new());
+    let mut tangents = Tangents { forces, openings, displacements: None, residual, applications: 0 };
+    let mut amplitudes = Vec::new();
     for (column, (constant, _)) in driven.iter().enumerate() {
         let solution = solution.col_as_slice(column);
         let mut forces = vec![0.0; count];
@@ -65,8 +75,9 @@ pub(super) fn tangents(
         tangents.openings.push(boundary.points.iter().map(|point| opening(point.start)).collect());
         forces.iter_mut().for_each(|force| *force *= contact.load);
         tangents.forces.push(forces);
+        amplitudes.push(solution[size..].to_vec());
     }
-    tangents
+    CondensedTangents { tangents, amplitudes }
 }
 
 /// δd and δe, dimensionless, of a column of forces on the contact dofs and of ∂B u − ∂g.

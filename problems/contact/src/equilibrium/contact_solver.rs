@@ -52,13 +52,20 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     ) -> Result<Sensitivities, ContactError>;
 
     /// Forward derivative of the contact state for changes of the controls, one vector per change: columns of the
-    /// generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of. `tolerance`: relative residual of
-    /// the linearized contact problems, for solvers that iterate.
+    /// generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of. `of`: whether displacements of the
+    /// bodies are differentiated as well, which costs one more solve per change. `tolerance`: relative residual of the
+    /// linearized contact problems, for solvers that iterate.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::NotFinite`] when they are singular,
     /// [`ContactError::ForeignState`] for changes of another number of controls.
-    fn tangents(&self, state: &Self::State, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError>;
+    fn tangents(
+        &self,
+        state: &Self::State,
+        changes: &[Vec<f64>],
+        of: TangentsOf,
+        tolerance: f64,
+    ) -> Result<Tangents, ContactError>;
 
     /// Contraction and condition at a solved shape.
     ///
@@ -90,6 +97,15 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     fn bodies(&self, state: &Self::State) -> Result<Vec<SolvedBody>, ContactError>;
 }
 
+/// What of a contact state is differentiated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum TangentsOf {
+    /// Forces and openings of the contact nodes.
+    Contact,
+    /// Forces and openings of the contact nodes, and displacements of all nodes of all bodies.
+    Displacements,
+}
+
 /// Directional derivatives of a contact state, one per change of the controls, and what they cost.
 #[derive(Debug, Clone)]
 pub struct Tangents {
@@ -97,6 +113,10 @@ pub struct Tangents {
     pub forces: Vec<Vec<f64>>,
     /// Changes of the openings (normal jump less gap) of the contact nodes per change of the controls, mm.
     pub openings: Vec<Vec<f64>>,
+    /// Changes of the displacements per change of the controls, where they were asked for: three entries along the axes
+    /// per node of every body, lower first, mm. They are total derivatives at fixed nodes of the mesh, which move with
+    /// the shape. Of several processes, the first one alone has the entries.
+    pub displacements: Option<Vec<Vec<f64>>>,
     /// Relative residual of the linearized contact problems.
     pub residual: f64,
     /// Products with the dual operator F, every column counted; 0 for direct condensation.
@@ -104,15 +124,24 @@ pub struct Tangents {
 }
 
 impl Tangents {
-    /// The tangents of bodies at rest: no force depends on the shape, and openings follow the gaps.
-    pub(crate) fn at_rest(problem: &ContactProblem, rows: &ContactRows, velocities: &Velocities<'_>) -> Self {
+    /// The tangents of bodies at rest: no force and no displacement depends on the shape (one-sidedly where a gap is
+    /// closed), and openings follow the gaps.
+    pub(crate) fn at_rest(
+        problem: &ContactProblem,
+        rows: &ContactRows,
+        velocities: &Velocities<'_>,
+        of: TangentsOf,
+    ) -> Self {
         let count = velocities.count();
         let opening = |column| {
             let changes = rows.changes(&problem.boundary, velocities, column);
             changes.iter().map(|change| -change.gap).collect()
         };
         let forces = vec![vec![0.0; problem.boundary.row_count]; count];
-        Self { forces, openings: (0..count).map(opening).collect(), residual: 0.0, applications: 0 }
+        let displacements =
+            (of == TangentsOf::Displacements).then(|| vec![vec![0.0; problem.displacement_count()]; count]);
+        let openings = (0..count).map(opening).collect();
+        Self { forces, openings, displacements, residual: 0.0, applications: 0 }
     }
 }
 

@@ -21,7 +21,7 @@ mod value_error;
 pub use boundary::{ContactBoundary, ContactPoint, Side};
 pub use certificate::{Kink, MAX_RESIDUAL, Residuals, WEAKLY_ACTIVE};
 pub use configuration::Configuration;
-pub use contact_solver::{ContactSolver, Sensitivities, Tangents};
+pub use contact_solver::{ContactSolver, Sensitivities, Tangents, TangentsOf};
 pub use diagnosis::Diagnosis;
 pub use facets::ContactFacets;
 pub use problem::{ContactProblem, Positions};

@@ -1,7 +1,7 @@
 //! What the first process announces to the others: the next task that all of them do together.
 
 use crate::communication::Communication;
-use crate::equilibrium::ContactWarmStart;
+use crate::equilibrium::{ContactWarmStart, TangentsOf};
 use crate::solvers::SolverPlan;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub enum Task {
     /// Sensitivities of a state for a dual, to a tolerance.
     Sensitivities(Id, Id, Vec<f64>, f64),
     /// Tangents of a state for changes of the controls, to a tolerance.
-    Tangents(Id, Id, Vec<Vec<f64>>, f64),
+    Tangents(Id, Id, Vec<Vec<f64>>, TangentsOf, f64),
     /// Contraction and condition at a state.
     Diagnose(Id, Id),
     /// Estimate of the contraction at a state, for at most so many products.
@@ -142,7 +142,7 @@ mod tests {
             Task::Prepare(7, plan(signorini().expect("a preset"))),
             Task::Prepare(u64::MAX, plan(hertz().expect("a preset"))),
             Task::Solve(7, 8, Box::new(shape((0..1000).map(|i| (f64::from(i)).sqrt()).collect()))),
-            Task::Tangents(7, 8, vec![vec![], vec![0.1; 5]], 1e-9),
+            Task::Tangents(7, 8, vec![vec![], vec![0.1; 5]], TangentsOf::Displacements, 1e-9),
             Task::End,
         ];
         for task in tasks {

@@ -3,7 +3,7 @@
 use crate::direct::DirectSolver;
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, SolverState,
-    Tangents,
+    Tangents, TangentsOf,
 };
 use crate::error::ContactError;
 use crate::solvers::announcement::{Id, Shape, Task};
@@ -147,9 +147,15 @@ impl ContactSolver for AnySolver {
         self.call(state, task, own, |result| result.applications)
     }
 
-    fn tangents(&self, state: &AnyState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
-        let task = |solver, state| Task::Tangents(solver, state, changes.to_vec(), tolerance);
-        let own = |solver: &OwnSolver, state: &OwnState| solver.tangents(state, changes, tolerance);
+    fn tangents(
+        &self,
+        state: &AnyState,
+        changes: &[Vec<f64>],
+        of: TangentsOf,
+        tolerance: f64,
+    ) -> Result<Tangents, ContactError> {
+        let task = |solver, state| Task::Tangents(solver, state, changes.to_vec(), of, tolerance);
+        let own = |solver: &OwnSolver, state: &OwnState| solver.tangents(state, changes, of, tolerance);
         self.call(state, task, own, |result| result.applications)
     }
 

@@ -59,8 +59,8 @@ impl Follower {
             Task::Sensitivities(solver, state, direction, tolerance) => {
                 self.derives(solver, state, |solver, state| solver.sensitivities(state, &direction, tolerance))?;
             }
-            Task::Tangents(solver, state, changes, tolerance) => {
-                self.derives(solver, state, |solver, state| solver.tangents(state, &changes, tolerance))?;
+            Task::Tangents(solver, state, changes, of, tolerance) => {
+                self.derives(solver, state, |solver, state| solver.tangents(state, &changes, of, tolerance))?;
             }
             Task::Diagnose(solver, state) => self.derives(solver, state, OwnSolver::diagnose)?,
             Task::Contraction(solver, state, products) => {

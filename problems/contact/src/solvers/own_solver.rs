@@ -9,7 +9,7 @@
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
-    Sensitivities, SolvedBody, Tangents,
+    Sensitivities, SolvedBody, Tangents, TangentsOf,
 };
 use crate::error::ContactError;
 use crate::memory;
@@ -222,11 +222,17 @@ impl OwnSolver {
     }
 
     /// Tangents of a total FETI state, by direct condensation where total FETI does not find them.
-    fn torn_tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
-        match self.torn()?.tangents(state, changes, tolerance) {
+    fn torn_tangents(
+        &self,
+        state: &TornState,
+        changes: &[Vec<f64>],
+        of: TangentsOf,
+        tolerance: f64,
+    ) -> Result<Tangents, ContactError> {
+        match self.torn()?.tangents(state, changes, of, tolerance) {
             Err(error) if !matches!(self.order, Order::Torn(_)) && !error.ends_the_search() => {
                 let (direct, condensed) = self.condensed(state)?;
-                direct.tangents(&condensed, changes, tolerance)
+                direct.tangents(&condensed, changes, of, tolerance)
             }
             result => result,
         }
@@ -286,10 +292,16 @@ impl ContactSolver for OwnSolver {
         }
     }
 
-    fn tangents(&self, state: &OwnState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+    fn tangents(
+        &self,
+        state: &OwnState,
+        changes: &[Vec<f64>],
+        of: TangentsOf,
+        tolerance: f64,
+    ) -> Result<Tangents, ContactError> {
         match state {
-            OwnState::Torn(state) => self.torn_tangents(state, changes, tolerance),
-            OwnState::Direct(state) => self.direct()?.tangents(state, changes, tolerance),
+            OwnState::Torn(state) => self.torn_tangents(state, changes, of, tolerance),
+            OwnState::Direct(state) => self.direct()?.tangents(state, changes, of, tolerance),
         }
     }
 

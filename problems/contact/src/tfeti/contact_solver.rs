@@ -3,7 +3,7 @@
 use crate::body::mesh::smallest_extent;
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, Stage,
-    Tangents,
+    Tangents, TangentsOf,
 };
 use crate::error::ContactError;
 use crate::linear::vector::dot;
@@ -89,10 +89,16 @@ impl ContactSolver for TotalFeti {
         self.sensitivities_within(state, direction, tolerance, MAX_PRODUCTS)
     }
 
-    fn tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+    fn tangents(
+        &self,
+        state: &TornState,
+        changes: &[Vec<f64>],
+        of: TangentsOf,
+        tolerance: f64,
+    ) -> Result<Tangents, ContactError> {
         self.problem().check_changes(changes)?;
         let Some(contact) = self.contact_of(state)? else {
-            return Ok(Tangents::at_rest(self.problem(), &state.rows, &self.problem().map.velocities(changes)));
+            return Ok(Tangents::at_rest(self.problem(), &state.rows, &self.problem().map.velocities(changes), of));
         };
         Stage::Adjoint.enter()?;
         derivative::tangents(&contact, state.shape(), &state.solution.linearizations, changes, tolerance)

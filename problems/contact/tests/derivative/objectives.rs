@@ -32,7 +32,7 @@ fn scenes() -> impl Iterator<Item = Scene> {
 fn region(scene: &Scene, body: Option<usize>) -> Region {
     let ([a, b], height) = (scene.blocks().unwrap().size, start_height(scene));
     let (lower, upper) = ([0.0, 0.2 * b, 0.3 * height], [0.7 * a, b, 1.6 * height]);
-    Region { lower, upper, body, volume: None }
+    Region { lower, upper, body, volume: None, face: None }
 }
 
 fn controls(shape: &ContactShape, seed: u64) -> Vector {
@@ -156,7 +156,7 @@ fn regions_without_a_brick_or_a_body_are_refused() {
     let outside = refused(Region { lower: [0.0, 0.0, 200.0], ..all.clone() });
     assert!(outside.contains("objective.region") && outside.contains("centre of a cell"), "{outside}");
     let upper = refused(Region { body: Some(1), ..all });
-    assert!(upper.contains("objective.body = upper"), "{upper}");
+    assert!(upper.contains("objective.region.body = upper"), "{upper}");
 }
 
 /// The limited peak, whose subgradient comes with the evaluation, as an objective of its own.

@@ -4,7 +4,7 @@ use crate::common::unit;
 
 use contact::body::elasticity::Material;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{ContactSolver, Tangents};
+use contact::equilibrium::{ContactSolver, Tangents, TangentsOf};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -38,7 +38,7 @@ fn forward_and_adjoint_agree(shape: &ContactShape, tolerance: f64) {
     for seed in 0..3 {
         let state = shape.solve(&controls(shape, seed), None, Accuracy::TIGHTEST).unwrap();
         let changes = changes(&[0, 7, 20, 35]);
-        let tangents = solver.tangents(&state.solution, &changes, 0.0).unwrap();
+        let tangents = solver.tangents(&state.solution, &changes, TangentsOf::Contact, 0.0).unwrap();
         assert!(tangents.residual < 1e-10, "{:e}", tangents.residual);
         let dual = seeded_direction(shape.problem().boundary.row_count, 100 + seed);
         let positions = solver.sensitivities(&state.solution, dual.as_slice(), 1e-12).unwrap().positions;
@@ -80,7 +80,7 @@ fn both_solvers_have_the_same_tangents() {
             let shape = shape(scene.clone(), friction, kind);
             let state = shape.solve(&controls(&shape, 3), None, Accuracy::TIGHTEST).unwrap();
             let changes = changes(&[1, 8, 21]);
-            shape.contact_solver().tangents(&state.solution, &changes, 0.0).unwrap()
+            shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Contact, 0.0).unwrap()
         });
         assert!(both[0].applications > 0 && both[1].applications == 0);
         let errors = [difference(&both[0].forces, &both[1].forces), difference(&both[0].openings, &both[1].openings)];
@@ -95,7 +95,9 @@ fn tangents_of_total_feti_are_as_accurate_as_asked_for() {
         let state = shape.solve(&controls(&shape, 4), None, Accuracy::TIGHTEST).unwrap();
         // More columns than advance in lockstep: two batches.
         let changes = changes(&(0..45).map(|k| k % 36).collect::<Vec<_>>());
-        let solve = |tolerance| shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap();
+        let solve = |tolerance| {
+            shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Contact, tolerance).unwrap()
+        };
         let exact = solve(0.0);
         let mut applications = exact.applications;
         for tolerance in [1e-4, 1e-2] {
@@ -114,7 +116,7 @@ fn ten_tangents(scene: Scene, tolerance: f64) -> Tangents {
     let shape = shape(scene, 0.3, SolverKind::Newton);
     let state = shape.solve(&controls(&shape, 6), None, Accuracy::TIGHTEST).unwrap();
     let changes = changes(&(5..15).collect::<Vec<_>>());
-    shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap()
+    shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Contact, tolerance).unwrap()
 }
 
 #[test]
@@ -150,7 +152,8 @@ fn tangents_in_single_precision_do_not_depend_on_the_unit_of_force() {
 fn changes_of_another_surface_are_refused() {
     let shape = shape(signorini().unwrap(), 0.3, SolverKind::Newton);
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-    let error = shape.contact_solver().tangents(&state.solution, &[vec![1.0; 3]], 0.0).unwrap_err();
+    let error =
+        shape.contact_solver().tangents(&state.solution, &[vec![1.0; 3]], TangentsOf::Contact, 0.0).unwrap_err();
     assert!(error.to_string().contains("3 controls, 36 expected"), "{error}");
 }
 
@@ -163,7 +166,8 @@ fn forces_and_openings_of_moved_surfaces_differ_by_the_tangents() {
         let solve = |controls: &Vector| shape.solve(controls, None, Accuracy::TIGHTEST).unwrap();
         let state = solve(&at);
         let column = 14;
-        let tangents = shape.contact_solver().tangents(&state.solution, &changes(&[column]), 0.0).unwrap();
+        let tangents =
+            shape.contact_solver().tangents(&state.solution, &changes(&[column]), TangentsOf::Contact, 0.0).unwrap();
         let mut moved = [at.clone(), at];
         moved[0][column] += STEP;
         moved[1][column] -= STEP;

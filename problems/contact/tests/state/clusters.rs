@@ -2,7 +2,7 @@
 
 use crate::common::{start_height, unit};
 use contact::contact_shape::ContactState;
-use contact::equilibrium::{ContactProblem, ContactSolver};
+use contact::equilibrium::{ContactProblem, ContactSolver, TangentsOf};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{Scene, hertz, signorini};
@@ -35,7 +35,7 @@ fn results(scene: &Scene, clusters: Option<usize>, method: DualMethod) -> Vec<(&
     let changes: Vec<Vec<f64>> = [0, 17, 35].map(|control| unit(36, control)).into();
     let bodies = solver.bodies(&solution).unwrap();
     let positions = solver.sensitivities(&solution, &dual, 1e-11).unwrap().positions;
-    let tangents = solver.tangents(&solution, &changes, 1e-10).unwrap();
+    let tangents = solver.tangents(&solution, &changes, TangentsOf::Contact, 1e-10).unwrap();
     vec![
         ("normal forces", forces.normal),
         ("tangential forces", forces.tangential.as_flattened().to_vec()),

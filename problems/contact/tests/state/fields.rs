@@ -7,7 +7,7 @@ use contact::body::elasticity::stress::{COMPONENTS, stress_at};
 use contact::body::elasticity::{CellNodes, Formulation, hex8};
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
-use contact::equilibrium::{ContactSolver, ContactStatus};
+use contact::equilibrium::{ContactSolver, ContactStatus, TangentsOf};
 use contact::error::ContactError;
 use contact::fields::{BodyFields, Fields};
 use contact::scene::{Scene, hertz, signorini};
@@ -276,7 +276,7 @@ fn states_of_other_solvers_and_meshes_are_refused() {
         let (dual, change) = (vec![1.0; other.problem().boundary.row_count], vec![1.0; 36]);
         let mut refusals = vec![
             solver.sensitivities(state, &dual, 1e-8).map(|_| ()),
-            solver.tangents(state, &[change], 1e-8).map(|_| ()),
+            solver.tangents(state, &[change], TangentsOf::Contact, 1e-8).map(|_| ()),
             solver.diagnose(state).map(|_| ()),
             solver.estimate_contraction(state, 10).map(|_| ()),
             solver.bodies(state).map(|_| ()),
@@ -290,7 +290,7 @@ fn states_of_other_solvers_and_meshes_are_refused() {
             assert!(matches!(error, ContactError::ForeignState { .. }), "{error}");
         }
         let state = other.solve(&other.start(), None, Accuracy::TIGHTEST).unwrap();
-        let error = solver.tangents(&state.solution, &[vec![1.0; 35]], 1e-8).unwrap_err();
+        let error = solver.tangents(&state.solution, &[vec![1.0; 35]], TangentsOf::Contact, 1e-8).unwrap_err();
         assert!(matches!(error, ContactError::ForeignState { expected: 36, found: 35, .. }), "{error}");
     }
 }

@@ -4,7 +4,7 @@
 use crate::common::{start_height, unit};
 use crate::rank::Rank;
 use contact::communication::Communication;
-use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState};
+use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState, TangentsOf};
 use contact::error::ContactError;
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{DualMethod, Recycling, TornOptions, TotalFeti};
@@ -44,7 +44,7 @@ fn solve(scene: &Scene, clusters: Option<usize>, communication: Option<Rank>, me
     let both: Vec<f64> = dual.iter().copied().chain(loads).collect();
     let positions_by_displacements = solver.sensitivities(&state, &both, 1e-11).unwrap().positions;
     let changes: Vec<Vec<f64>> = [0, 17, 35].map(|control| unit(36, control)).into();
-    let tangents = solver.tangents(&state, &changes, 1e-6).unwrap().forces;
+    let tangents = solver.tangents(&state, &changes, TangentsOf::Contact, 1e-6).unwrap().forces;
     let contraction = solver.diagnose(&state).unwrap().contraction;
     Outcome {
         forces: forces.normal,

@@ -28,6 +28,17 @@ pub struct StressedCell {
     pub volume_by_position: Vec<[f64; 3]>,
 }
 
+/// Von Mises stress at a point of a cell, with its derivatives per node and component.
+#[derive(Debug, Clone)]
+pub struct PointStress {
+    /// σ_vM, MPa.
+    pub stress: f64,
+    /// ∂σ_vM/∂u, MPa/mm.
+    pub by_displacement: Vec<[f64; 3]>,
+    /// ∂σ_vM/∂x at fixed displacements, MPa/mm.
+    pub by_position: Vec<[f64; 3]>,
+}
+
 /// Evaluates an expression for the integration points of a cell of either kind.
 macro_rules! with_points {
     ($cell:expr, |$points:ident| $value:expr) => {
@@ -161,6 +172,20 @@ impl CellNodes<f64> {
             Self::Hex8(nodes) => von_mises_at(&hex8::centre(nodes), shear_modulus, u),
             Self::Tet10(nodes) => von_mises_at(&tet10::centre(nodes), shear_modulus, u),
         }
+    }
+
+    /// σ_vM at the integration points, MPa.
+    pub fn point_stresses(&self, shear_modulus: f64, u: &[f64]) -> Vec<f64> {
+        with_points!(self, |points| points.iter().map(|point| von_mises_at(point, shear_modulus, u)).collect())
+    }
+
+    /// Von Mises stress at an integration point, by its number, with its derivatives.
+    pub fn stressed_at(&self, point: usize, shear_modulus: f64, u: &[f64]) -> PointStress {
+        with_points!(self, |points| {
+            let found = StressedPoint::new(&points[point], shear_modulus, u);
+            let (by_displacement, by_position) = (found.by_displacement.to_vec(), found.by_position.to_vec());
+            PointStress { stress: found.stress, by_displacement, by_position }
+        })
     }
 
     /// Von Mises stress at the centre and volume, with their derivatives.

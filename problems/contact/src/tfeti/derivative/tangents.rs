@@ -73,7 +73,8 @@ pub fn tangents(
     tolerance: f64,
 ) -> Result<Tangents, ContactError> {
     let active = contact.active_set(linearizations.to_vec(), Friction::Coulomb)?;
-    let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual: 0.0, applications: 0 };
+    let (forces, openings) = (Vec::new(), Vec::new());
+    let mut tangents = Tangents { forces, openings, displacements: None, residual: 0.0, applications: 0 };
     let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
     for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
         match batch.len().div_ceil(LANES) {

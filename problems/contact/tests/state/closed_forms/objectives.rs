@@ -27,7 +27,7 @@ fn pressed() -> Scene {
 fn objectives_of_a_uniformly_pressed_block() {
     let area = SIZE[0] * SIZE[1];
     let whole = Region::WHOLE;
-    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0), volume: None };
+    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0), volume: None, face: None };
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(pressed(), kind).unwrap().with_displacements();
         let (problem, start) = (shape.problem(), shape.start());
