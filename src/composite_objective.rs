@@ -161,6 +161,27 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
         chain_rule(&self.solver, control, state, self.value(state), || self.cost_gradient(control, state))
     }
 
+    /// What [`evaluate`](NonsmoothObjective::evaluate) answers at a state already found for the point of the request,
+    /// without its work: for objectives that add something of the state to it.
+    ///
+    /// # Errors
+    /// As [`differentiate`](Self::differentiate).
+    pub fn evaluate_at(
+        &self,
+        request: &Request<'_, S::WarmStart>,
+        state: &S::State,
+    ) -> Result<Evaluation<S::WarmStart>, OracleError> {
+        let mut evaluation = self.differentiate(request.point, state)?;
+        if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
+            evaluation.linearization = self.linearize(request.point, state, &evaluation.subgradient, wanted.accuracy);
+        }
+        evaluation.constraints = match evaluation.linearization.known() {
+            Some(known) => of_outputs(&self.cost, known),
+            None => self.constraints(request.point, state)?,
+        };
+        Ok(evaluation)
+    }
+
     /// The constraints at a state whose Jacobian is not known, by one coderivative for each.
     fn constraints(&self, control: &Vector, state: &S::State) -> Result<Option<ConstraintEvaluation>, OracleError> {
         let count = self.cost.constraint_kinds().len();
@@ -204,17 +225,6 @@ impl<S: OutputJacobian, H: OuterFunction> NonsmoothObjective for CompositeObject
     }
 
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        evaluate(&self.solver, request, |state| {
-            let mut evaluation = self.differentiate(request.point, state)?;
-            if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
-                evaluation.linearization =
-                    self.linearize(request.point, state, &evaluation.subgradient, wanted.accuracy);
-            }
-            evaluation.constraints = match evaluation.linearization.known() {
-                Some(known) => of_outputs(&self.cost, known),
-                None => self.constraints(request.point, state)?,
-            };
-            Ok(evaluation)
-        })
+        evaluate(&self.solver, request, |state| self.evaluate_at(request, state))
     }
 }

@@ -1,16 +1,18 @@
-//! The objective Θ of a contact problem: a measure of the states of a shape, and its first step.
+//! The objective Θ of a contact problem: a measure of the states of a shape in all load cases, and its first step.
 
 use crate::body::mesh::smallest_extent;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
-use crate::cost::{ContactAreas, FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, VolumeLimits};
-use crate::equilibrium::{ContactProblem, ContactSolver};
+use crate::cost::{ContactAreas, Limit, LimitedQuantity, Measure, PressureCost};
+use crate::equilibrium::ContactSolver;
 use crate::error::SceneError;
+use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCases, Over, WeightedCase};
 use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
+use nonsmooth::nonlinear::ConstraintPiece;
 use nonsmooth::{
-    Answer, CompositeObjective, ConstraintEvaluation, ConstraintKind, Cost, CostGradient, Evaluation, Matrix,
-    NonsmoothObjective, OracleError, OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
+    Answer, CompositeObjective, ConstraintEvaluation, ConstraintKind, CostGradient, Evaluation, Matrix,
+    NonsmoothObjective, OracleError, OutputJacobian, Request, StateSolver, Vector,
 };
 
 /// Least first step over the smallest extent of the body. Ten times as much costs evaluations on flat bodies.
@@ -19,259 +21,233 @@ const LEAST_FIRST_STEP: f64 = 1e-3;
 /// nothing about their shape.
 const LARGEST_FIRST_STEP: f64 = 0.5;
 
-/// Θ of a scene: a measure of the contact state that the controls lead to, with limits beside it. Where a pressure norm
-/// may lie outside the range of doubles, Θ is its p-th root.
+/// Θ of a scene: a measure of the contact states that the controls lead to, one per load case, with limits beside it.
+/// Where a pressure norm may lie outside the range of doubles, Θ is made of p-th roots.
 #[derive(Debug)]
 pub struct ContactObjective<S: ContactSolver = AnySolver> {
-    measured: Measured<S>,
-    limits: Vec<Limit>,
-    volume: VolumeLimits,
+    composed: CompositeObjective<LoadCases<S>, CasesCost>,
+    /// The limits in the order of the constraints of the optimizer: those that are functions of the outputs first.
+    bounds: Vec<Bound>,
     kinds: Vec<ConstraintKind>,
 }
 
-/// A measure of the states of a map.
-#[derive(Debug)]
-enum Measured<S: ContactSolver> {
-    /// A convex function of the contact pressures.
-    Pressure(CompositeObjective<ContactShape<S>, PressureCost>),
-    /// A function of the displacements, which has no composite model.
-    Field(ReducedObjective<ContactShape<S>, FieldCost>),
-}
-
-/// A measure on the bodies of a problem.
-#[derive(Debug, Clone)]
-pub enum ContactCost {
-    /// Of the contact pressures, normalised where it may lie outside the range of doubles.
-    Pressure(PressureCost),
-    /// A function of the displacements.
-    Field(FieldCost),
-}
-
-impl ContactCost {
-    /// The cost of a measure with the limits that go with the contact pressures.
-    ///
-    /// # Errors
-    /// As [`PressureCost::new`] and [`FieldCost::new`]; [`SceneError::OutOfRange`] for a limit of the pressure beside a
-    /// function of the displacements, and for two.
-    pub fn new(measure: Measure, limits: &[Limit], problem: &ContactProblem) -> Result<Self, SceneError> {
-        let peak: Vec<&Limit> = limits.iter().filter(|limit| limit.quantity == LimitedQuantity::PeakPressure).collect();
-        let refused = |allowed: &str| Err(SceneError::out_of_range("limit", "peak-pressure", allowed));
-        Ok(match (measure, peak.as_slice()) {
-            (_, [_, _, ..]) => return refused("one limit of the peak pressure"),
-            (Measure::Pressure(measure), peak) => {
-                let cost = PressureCost::new(measure, problem)?.normalised_for(problem);
-                match peak {
-                    [limit] if limit.side != LimitSide::AtMost => return refused("at most a bound"),
-                    [limit, ..] => Self::Pressure(cost.limited(limit.bound)?),
-                    [] => Self::Pressure(cost),
-                }
-            }
-            (Measure::Field(_), [_]) => return refused("none beside a function of the displacements"),
-            (Measure::Field(measure), []) => Self::Field(FieldCost::new(measure, problem)?),
-        })
-    }
-}
-
 impl<S: ContactSolver> ContactObjective<S> {
-    /// A measure of the states of a map, with limits beside it.
+    /// A measure of the states of one map, with limits beside it.
     ///
     /// # Errors
-    /// As [`ContactCost::new`]; [`SceneError::OutOfRange`] for bounds of the volume that are not finite and > 0.
+    /// As [`of_cases`](Self::of_cases).
     pub fn new(shape: ContactShape<S>, measure: Measure, limits: &[Limit]) -> Result<Self, SceneError> {
-        let limits = Limit::in_order(limits);
-        let volume = VolumeLimits::new(&limits, shape.problem())?;
-        let measured = match ContactCost::new(measure, &limits, shape.problem())? {
-            ContactCost::Pressure(cost) => {
-                Measured::Pressure(CompositeObjective::new(shape.with_outputs(cost.outputs()), cost))
-            }
-            ContactCost::Field(cost) => Measured::Field(ReducedObjective::new(shape.with_displacements(), cost)),
+        let case = LoadCase { name: String::new(), weight: 1.0, shape, measure };
+        Self::of_cases(vec![case], Over::Worst, limits)
+    }
+
+    /// Some load cases of one shape, at least one, rated together. A limit of no case holds in each of them.
+    ///
+    /// # Errors
+    /// As [`CasesCost::new`]; [`SceneError::OutOfRange`] for a limit of an unknown case, a bound that means nothing,
+    /// and cases whose controls differ in number.
+    pub fn of_cases(cases: Vec<LoadCase<S>>, over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
+        let weighted = |case: &LoadCase<S>| (case.weight, case.measure.clone());
+        let plain: Vec<(f64, Measure)> = cases.iter().map(weighted).collect();
+        let parts = plain.into_iter().zip(&cases).map(|((weight, measure), case)| WeightedCase {
+            name: &case.name,
+            weight,
+            measure,
+            problem: case.shape.problem(),
+        });
+        let parts: Vec<WeightedCase<'_>> = parts.collect();
+        let cost = CasesCost::new(&parts, over, limits)?;
+        let named: Vec<_> = parts.iter().map(|part| (part.name, part.problem)).collect();
+        let bounds = Bound::all(limits, &named)?;
+        let kinds = bounds.iter().map(Bound::kind).collect();
+        let fields = |case: usize| {
+            let own = bounds.iter().filter(|bound| bound.case == case).map(Bound::fields);
+            own.fold([false; 2], |[any, kinks], [field, kink]| [any || field, kinks || kink])
         };
-        let kinds = limits.iter().map(Limit::kind).collect();
-        Ok(Self { measured, limits, volume, kinds })
+        let fields: Vec<[bool; 2]> = (0..cases.len()).map(fields).collect();
+        let map = LoadCases::new(cases, &cost, &fields);
+        Ok(Self { composed: CompositeObjective::new(map, cost), bounds, kinds })
     }
 
-    /// The limits, in the order of the constraints of the optimizer.
-    pub fn limits(&self) -> &[Limit] {
-        &self.limits
+    /// The limits with their cases, in the order of the constraints of the optimizer.
+    pub fn limits(&self) -> impl Iterator<Item = &Limit> {
+        self.bounds.iter().map(|bound| &bound.limit)
     }
 
-    /// The values of the limited quantities at a state already found, in the order of [`Self::limits`].
-    pub fn limited_values(&self, control: &Vector, state: &ContactState<S::State>) -> Vec<f64> {
-        let of_state = self.limits.iter().filter(|limit| !limit.quantity.is_of_shape());
-        let peak = || self.pressures(state).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let mut values: Vec<f64> = of_state.map(|_| peak()).collect();
-        values.extend(self.volume.values(self.solver().problem(), control));
-        values
+    /// The values of the limited quantities at states already found, in the order of [`Self::limits`].
+    pub fn limited_values(&self, control: &Vector, states: &CaseStates<S::State>) -> Vec<f64> {
+        let problem = |case: usize| self.cases().case(case).problem();
+        self.bounds.iter().map(|bound| bound.value(problem(bound.case), control, &states[bound.case])).collect()
     }
 
-    /// Adds the constraints of the shape to those of an evaluation.
-    fn add_constraints(&self, control: &Vector, evaluation: &mut Evaluation<ContactWarmStart>) {
-        let own = self.volume.constraints(self.solver().problem(), control);
-        if own.is_empty() {
-            return;
+    /// Adds the constraints that are no functions of the outputs to those of an evaluation.
+    fn add_constraints(
+        &self,
+        control: &Vector,
+        states: &CaseStates<S::State>,
+        evaluation: &mut Evaluation<Vec<ContactWarmStart>>,
+    ) -> Result<(), OracleError> {
+        let first = self.composed.cost().constraint_kinds().len();
+        if self.bounds.len() == first {
+            return Ok(());
         }
-        let known = evaluation.constraints.take();
-        let known =
-            known.unwrap_or_else(|| ConstraintEvaluation::new(Vector::zeros(0), Matrix::zeros(0, control.len())));
-        let (first, count) = (known.values.len(), known.values.len() + own.len());
+        let empty = || ConstraintEvaluation::new(Vector::zeros(0), Matrix::zeros(0, control.len()));
+        let known = evaluation.constraints.take().unwrap_or_else(empty);
+        let count = self.bounds.len();
         let mut jacobian = known.jacobian.resize_vertically(count, 0.0);
         let mut values = known.values.resize_vertically(count, 0.0);
-        for (index, (value, gradient)) in own.into_iter().enumerate() {
-            values[first + index] = value;
-            jacobian.set_row(first + index, &gradient.transpose());
+        let mut pieces = known.pieces;
+        for (constraint, bound) in self.bounds.iter().enumerate().skip(first) {
+            let found = bound.linearized(self.cases(), control, states)?;
+            values[constraint] = found.value;
+            jacobian.set_row(constraint, &found.gradient.transpose());
+            let further = found.pieces.into_iter();
+            pieces.extend(further.map(|(value, gradient)| ConstraintPiece { constraint, value, gradient }));
         }
-        evaluation.constraints = Some(ConstraintEvaluation { values, jacobian, pieces: known.pieces });
+        evaluation.constraints = Some(ConstraintEvaluation { values, jacobian, pieces });
+        Ok(())
     }
 
-    /// The map from controls to contact states.
+    /// The map from controls to the states of all cases.
+    pub fn cases(&self) -> &LoadCases<S> {
+        self.composed.solver()
+    }
+
+    /// Θ as a function of the outputs of all cases.
+    pub fn cost(&self) -> &CasesCost {
+        self.composed.cost()
+    }
+
+    /// The map of the first case, whose shape and controls are those of all.
     pub fn solver(&self) -> &ContactShape<S> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.solver(),
-            Measured::Field(objective) => objective.solver(),
+        self.cases().case(0)
+    }
+
+    /// The measure of the pressures in a case, where Θ is one.
+    fn pressure(&self, case: usize) -> Option<&PressureCost> {
+        match self.cost().case(case) {
+            CaseCost::Pressure(cost) => Some(cost),
+            CaseCost::Field(_) | CaseCost::Volume => None,
         }
     }
 
-    /// Θ at a state already found.
-    pub fn value(&self, control: &Vector, state: &ContactState<S::State>) -> f64 {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.value(state),
-            Measured::Field(objective) => objective.cost().value(control, state),
-        }
+    /// Θ at states already found.
+    pub fn value(&self, states: &CaseStates<S::State>) -> f64 {
+        self.composed.value(states)
     }
 
-    /// The gradients of the cost by the controls at a fixed state, and by the state at fixed controls, y*: what the
+    /// The first of the worst cases at states already found.
+    pub fn worst(&self, states: &CaseStates<S::State>) -> usize {
+        self.cost().worst(&self.cases().outputs(states))
+    }
+
+    /// w_k J_k of every case at states already found: Θ is the largest of them, or their sum.
+    pub fn weighted_values(&self, states: &CaseStates<S::State>) -> Vec<f64> {
+        self.cost().weighted(&self.cases().outputs(states))
+    }
+
+    /// The gradients of the cost by the controls at fixed states, and by the states at fixed controls, y*: what the
     /// coderivative is asked for.
-    pub fn cost_gradient(&self, control: &Vector, state: &ContactState<S::State>) -> CostGradient {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost_gradient(control, state),
-            Measured::Field(objective) => objective.cost().gradient(control, state),
-        }
+    pub fn cost_gradient(&self, control: &Vector, states: &CaseStates<S::State>) -> CostGradient {
+        self.composed.cost_gradient(control, states)
     }
 
-    /// Θ and one subgradient at a state already found.
+    /// Θ and one subgradient at states already found.
     ///
     /// # Errors
-    /// As [`CompositeObjective::differentiate`] and [`ReducedObjective::differentiate`].
+    /// As [`CompositeObjective::differentiate`].
     pub fn differentiate(
         &self,
         control: &Vector,
-        state: &ContactState<S::State>,
-    ) -> Result<Evaluation<ContactWarmStart>, OracleError> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.differentiate(control, state),
-            Measured::Field(objective) => objective.differentiate(control, state),
-        }
+        states: &CaseStates<S::State>,
+    ) -> Result<Evaluation<Vec<ContactWarmStart>>, OracleError> {
+        self.composed.differentiate(control, states)
     }
 
-    /// The derivative of Θ by the position of every node of the lower body along the axes at a state already found,
-    /// unit of Θ per mm; 0 for nodes that no control moves.
+    /// The derivative of Θ by the position of every node of the lower body along the axes at states already found, unit
+    /// of Θ per mm; 0 for nodes that no control moves.
     ///
     /// # Errors
     /// As [`ContactShape::position_sensitivity`].
     pub fn position_sensitivity(
         &self,
         control: &Vector,
-        state: &ContactState<S::State>,
+        states: &CaseStates<S::State>,
     ) -> Result<Vec<[f64; 3]>, OracleError> {
-        let dual = self.cost_gradient(control, state).state;
-        let mut positions = self.solver().position_sensitivity(state, &dual)?.0;
-        let explicit = match (&self.measured, &state.bodies) {
-            (Measured::Field(objective), Some(bodies)) => objective.cost().gradient_of(bodies).positions,
-            (Measured::Field(_), None) => return Ok(positions),
-            (Measured::Pressure(objective), _) => {
-                let weights = objective.cost().subgradient(&self.solver().outputs(state));
-                self.solver().output_position_gradient(control, state, &weights)
-            }
-        };
-        for (sum, explicit) in positions.iter_mut().zip(explicit) {
-            (0..3).for_each(|axis| sum[axis] += explicit[axis]);
-        }
-        Ok(positions)
+        let weights = self.cost().subgradient(&self.cases().outputs(states));
+        self.cases().position_sensitivity(control, states, &weights)
     }
 
-    /// σ per contact node, MPa.
+    /// σ per contact node of a case, MPa.
     pub fn pressures(&self, state: &ContactState<S::State>) -> Vec<f64> {
         state.rows.pressures(&state.forces.normal)
     }
 
-    /// The wanted pressure per contact node, MPa, where the deviation from it is minimised.
+    /// The wanted pressure per contact node in the first case, MPa, where the deviation from it is minimised.
     pub fn wanted(&self) -> Option<&[f64]> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().wanted(),
-            Measured::Field(_) => None,
-        }
+        self.pressure(0)?.wanted()
     }
 
-    /// Why Θ does not change near a state of contact, where more is known than that its derivative is zero.
-    pub(crate) fn why_flat(&self, state: &ContactState<S::State>) -> Option<String> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().why_flat(state),
-            Measured::Field(_) => None,
-        }
+    /// Why Θ does not change near states of contact, where more is known than that its derivative is zero.
+    pub(crate) fn why_flat(&self, states: &CaseStates<S::State>) -> Option<String> {
+        let worst = self.worst(states);
+        self.pressure(worst)?.why_flat(&states[worst])
     }
 
-    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements,
-    /// and where normals or areas change with the shape.
-    pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
-        match &self.measured {
-            Measured::Pressure(objective) if self.solver().problem().geometry.is_fixed() => {
-                objective.cost().lower_bound(total_force)
-            }
-            Measured::Pressure(_) | Measured::Field(_) => None,
-        }
+    /// The least value that the total normal forces of some states leave possible, unit of Θ; none for functions of the
+    /// displacements, and where normals or areas change with the shape.
+    pub fn lower_bound(&self, states: &CaseStates<S::State>) -> Option<f64> {
+        let bound = |(case, state): (usize, &ContactState<S::State>)| {
+            let fixed = self.cases().case(case).problem().geometry.is_fixed();
+            let cost = self.pressure(case).filter(|_| fixed)?;
+            Some(self.cost().weight(case) * cost.lower_bound(state.forces.total_normal_force())?)
+        };
+        let bounds = states.iter().enumerate().map(bound).collect::<Option<Vec<f64>>>()?;
+        Some(match self.cost().over() {
+            Over::Worst => bounds.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            Over::Sum => bounds.into_iter().sum(),
+        })
     }
 
     /// The unit of Θ, such as `MPa^{4}·mm^{2}`.
     pub fn unit(&self) -> String {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().unit(),
-            Measured::Field(objective) => objective.cost().unit().into(),
+        match self.cost().case(0) {
+            CaseCost::Pressure(cost) => cost.unit(),
+            CaseCost::Field(cost) => cost.unit().into(),
+            CaseCost::Volume => LimitedQuantity::Volume.unit().into(),
         }
     }
 
-    /// A value of Θ as a pressure, where Θ is a sum of powers of pressures.
+    /// A value of Θ as a pressure, where Θ is a sum of powers of pressures of one case, or of the worst with weight 1.
     pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().pressure_root(value),
-            Measured::Field(_) => None,
-        }
+        let plain = (0..self.cases().count()).all(|case| self.cost().weight(case) == 1.0);
+        let alone = self.cases().count() == 1 || self.cost().over() == Over::Worst;
+        self.pressure(0).filter(|_| plain && alone)?.pressure_root(value)
     }
 
     /// p where Θ is (Σσ^p)^{1/p} in place of Σσ^p, else 1.
     pub fn root(&self) -> f64 {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().root(),
-            Measured::Field(_) => 1.0,
-        }
+        self.pressure(0).map_or(1.0, PressureCost::root)
     }
 
-    /// As [`PressureCost::norm_of_root`]; none for functions of the displacements.
+    /// As [`PressureCost::norm_of_root`]; none for several cases and for functions of the displacements.
     pub fn norm_of_root(&self) -> Option<(f64, String)> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().norm_of_root(),
-            Measured::Field(_) => None,
-        }
+        self.pressure(0).filter(|_| self.cases().count() == 1)?.norm_of_root()
     }
 
-    /// As [`PressureCost::norm_in_mpa`]; none for functions of the displacements.
+    /// As [`PressureCost::norm_in_mpa`], under the conditions of [`pressure_root`](Self::pressure_root).
     pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().norm_in_mpa(value),
-            Measured::Field(_) => None,
-        }
+        self.pressure_root(value).map(|root| root.value)
     }
 
-    /// The contact areas of a state, where the open area is what is minimised.
-    pub fn contact_areas(&self, state: &ContactState<S::State>) -> Option<ContactAreas> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.cost().contact_areas(state),
-            Measured::Field(_) => None,
-        }
+    /// The contact areas of a state of a case, where the open area is what is minimised.
+    pub fn contact_areas(&self, case: usize, state: &ContactState<S::State>) -> Option<ContactAreas> {
+        self.pressure(case)?.contact_areas(state)
     }
 
-    /// Half of the mean distance between a surface and its counterpart, the length on which contact changes, but at
-    /// least a thousandth and at most half of the smallest extent of the body, mm: bodies that touch everywhere have no
-    /// distance, and deform.
+    /// Half of the mean distance between a surface and its counterpart in the first case, the length on which contact
+    /// changes, but at least a thousandth and at most half of the smallest extent of the body, mm: bodies that touch
+    /// everywhere have no distance, and deform.
     pub fn first_step(&self, start: &Vector) -> f64 {
         let problem = self.solver().problem();
         let positions = problem.positions(start.as_slice());
@@ -290,37 +266,35 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
         let count = start.len();
-        let is_height = self.solver().problem().scene.heights().is_some();
+        let is_height = self.solver().problem().scene.heights().is_some() && !self.cost().is_volume();
         let stretch = if is_height { (start.mean().abs() / first_step).max(1.0) } else { 1.0 };
         Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
     }
 }
 
 impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
-    type WarmStart = ContactWarmStart;
+    type WarmStart = Vec<ContactWarmStart>;
 
     fn dimension(&self) -> usize {
-        self.solver().control_dimension()
+        self.composed.dimension()
     }
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
-        match &self.measured {
-            Measured::Pressure(objective) => objective.outer(),
-            Measured::Field(objective) => objective.outer(),
-        }
+        self.composed.outer()
     }
 
     fn constraint_kinds(&self) -> &[ConstraintKind] {
         &self.kinds
     }
 
-    fn evaluate(&self, request: &Request<'_, ContactWarmStart>) -> Result<Answer<ContactWarmStart>, OracleError> {
-        let mut answer = match &self.measured {
-            Measured::Pressure(objective) => objective.evaluate(request),
-            Measured::Field(objective) => objective.evaluate(request),
-        }?;
-        let (Answer::Accurate(evaluation) | Answer::NoDescent(evaluation)) = &mut answer;
-        self.add_constraints(request.point, evaluation);
-        Ok(answer)
+    fn evaluate(
+        &self,
+        request: &Request<'_, Vec<ContactWarmStart>>,
+    ) -> Result<Answer<Vec<ContactWarmStart>>, OracleError> {
+        let states = self.cases().solve(request.point, request.warm_start, request.accuracy)?;
+        let mut evaluation = self.composed.evaluate_at(request, &states)?;
+        self.add_constraints(request.point, &states, &mut evaluation)?;
+        evaluation.work = self.cases().work(&states);
+        Ok(Answer::Accurate(evaluation))
     }
 }

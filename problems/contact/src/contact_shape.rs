@@ -11,7 +11,7 @@
 
 use crate::cost::PressureOutputs;
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, TangentsOf, ValueError,
+    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, Tangents, TangentsOf, ValueError,
 };
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
@@ -74,6 +74,11 @@ impl<S: ContactSolver> ContactShape<S> {
     #[must_use]
     pub fn with_displacements(self) -> Self {
         Self { displacements: true, ..self }
+    }
+
+    /// Whether the states hold the displacements of all bodies.
+    pub fn holds_displacements(&self) -> bool {
+        self.displacements
     }
 
     /// Replaces the outputs, which are the contact pressures: where the areas of contact nodes change with the shape, a
@@ -204,6 +209,42 @@ impl<S: ContactSolver> ContactShape<S> {
         problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area)
     }
 
+    /// Outputs with their Jacobian, and the forward derivatives behind it, with those of the displacements if these are
+    /// asked for.
+    ///
+    /// # Errors
+    /// As [`OutputJacobian::linearize`].
+    pub(crate) fn linearize_with(
+        &self,
+        control: &Vector,
+        state: &ContactState<S::State>,
+        accuracy: Accuracy,
+        of: TangentsOf,
+    ) -> Result<(Linearization, Tangents), OracleError> {
+        self.check_dimension(control)?;
+        let (problem, outputs) = (self.problem(), self.outputs(state));
+        let changes = unit_changes(control.len());
+        let tangents = self.solver.tangents(&state.solution, &changes, of, accuracy.tolerance()).map_err(oracle)?;
+        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
+        let (points, areas) = (&problem.boundary.points, state.rows.areas());
+        let velocities = problem.map.velocities(&changes);
+        let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
+        let mut jacobian = Matrix::zeros(outputs.len(), control.len());
+        for (k, mut column) in jacobian.column_iter_mut().enumerate() {
+            let moved = lower.as_ref().map(|lower| problem.area_changes(lower, &velocities, k));
+            let forces = |node: usize| tangents.forces[k][points[node].start];
+            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
+            column.copy_from_slice(&changes);
+        }
+        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
+        let inactive = InactiveConstraints {
+            slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
+            jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),
+        };
+        let accuracy = tangents.residual;
+        Ok((Linearization { outputs, jacobian, accuracy, inactive: Some(inactive) }, tangents))
+    }
+
     fn check_dimension(&self, control: &Vector) -> Result<(), OracleError> {
         Ok(InputError::check_vector("control", self.control_dimension(), control)?)
     }
@@ -282,32 +323,13 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         state: &Self::State,
         accuracy: Accuracy,
     ) -> Result<Linearization, OracleError> {
-        self.check_dimension(control)?;
-        let (problem, outputs) = (self.problem(), self.outputs(state));
-        let unit = |k: usize| (0..control.len()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let changes: Vec<Vec<f64>> = (0..control.len()).map(unit).collect();
-        let tangents = self
-            .solver
-            .tangents(&state.solution, &changes, TangentsOf::Contact, accuracy.tolerance())
-            .map_err(oracle)?;
-        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
-        let (points, areas) = (&problem.boundary.points, state.rows.areas());
-        let velocities = problem.map.velocities(&changes);
-        let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
-        let mut jacobian = Matrix::zeros(outputs.len(), control.len());
-        for (k, mut column) in jacobian.column_iter_mut().enumerate() {
-            let moved = lower.as_ref().map(|lower| problem.area_changes(lower, &velocities, k));
-            let forces = |node: usize| tangents.forces[k][points[node].start];
-            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
-            column.copy_from_slice(&changes);
-        }
-        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
-        let inactive = InactiveConstraints {
-            slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
-            jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),
-        };
-        Ok(Linearization { outputs, jacobian, accuracy: tangents.residual, inactive: Some(inactive) })
+        Ok(self.linearize_with(control, state, accuracy, TangentsOf::Contact)?.0)
     }
+}
+
+/// A change of every control by one.
+pub(crate) fn unit_changes(count: usize) -> Vec<Vec<f64>> {
+    (0..count).map(|k| (0..count).map(|i| f64::from(u8::from(i == k))).collect()).collect()
 }
 
 /// Mechanics' reasons in the framework's words.

@@ -40,6 +40,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`contact_shape`], [`cost`], [`contact_objective`] | the contact problem in the framework's terms: state solver with coderivative, costs, Θ |
+//! | [`load_cases`] | several loadings of one shape, rated together |
 //! | [`scene`], [`shape`] | what a problem is made of; splines and the admissible set |
 //! | [`body`] | meshes and their pieces; elasticity; element sums of the adjoint |
 //! | [`equilibrium`] | boundary, contact rows of a shape, contact law, rigid motions, certificates, the discrete problem and its state |
@@ -69,6 +70,7 @@ pub mod fields;
 pub mod formula;
 pub mod friction_problem;
 pub mod linear;
+pub mod load_cases;
 pub mod memory;
 pub mod names;
 pub mod plausibility;

@@ -1,8 +1,8 @@
 //! Why an optimization ended where it began.
 
 use crate::contact_objective::ContactObjective;
-use crate::contact_shape::ContactState;
 use crate::equilibrium::{ContactSolver, ContactStatus};
+use crate::load_cases::CaseStates;
 use crate::plausibility::Warning;
 use nonsmooth::{OracleError, Report, Termination, Vector};
 
@@ -23,7 +23,7 @@ pub fn standstill<'r, S: ContactSolver>(
     reports: impl IntoIterator<Item = &'r Report>,
     objective: &ContactObjective<S>,
     start: &Vector,
-    end: (&Vector, &ContactState<S::State>),
+    end: (&Vector, &CaseStates<S::State>),
 ) -> Result<Option<Warning>, OracleError> {
     let stood_still = |report: &Report| {
         let termination = &report.termination;
@@ -34,22 +34,22 @@ pub fn standstill<'r, S: ContactSolver>(
     if !reports.into_iter().all(stood_still) {
         return Ok(None);
     }
-    let (controls, state) = end;
-    let value = objective.value(controls, state);
+    let (controls, states) = end;
+    let value = objective.value(states);
     // Without loads, what is left of forces is rounding of the gaps.
-    let idle = objective.solver().problem().load() == 0.0;
-    let slope = objective.differentiate(controls, state)?.subgradient.lp_norm(1);
+    let idle = (0..objective.cases().count()).all(|case| objective.cases().case(case).problem().load() == 0.0);
+    let slope = objective.differentiate(controls, states)?.subgradient.lp_norm(1);
     let is_flat = idle || slope * objective.first_step(start) <= FLAT * value.abs();
     let flat = |reason: String| Warning {
         code: "flat-objective",
         text: format!("the objective does not change with the shape where the run begins: {reason}"),
     };
-    let known = if idle { Some(IDLE.into()) } else { why_flat(objective, state) };
+    let known = if idle { Some(IDLE.into()) } else { why_flat(objective, states) };
     if let Some(reason) = known.filter(|_| is_flat) {
         return Ok(Some(flat(reason)));
     }
     // At its least value, Θ is flat too where it is smooth.
-    let least = objective.lower_bound(state.forces.total_normal_force());
+    let least = objective.lower_bound(states);
     let least = least.filter(|least| value - least <= LEAST * value.abs()).map(|least| Warning {
         code: "least-objective",
         text: format!("the run begins at the least value that any shape has with this total force, {least:.4e}: nothing is to be gained"),
@@ -58,11 +58,12 @@ pub fn standstill<'r, S: ContactSolver>(
     Ok(least.or_else(|| is_flat.then(|| flat(unknown.into()))))
 }
 
-/// Why Θ does not change near a state, where more is known than that its derivative is zero.
-fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, state: &ContactState<S::State>) -> Option<String> {
-    if state.forces.status.iter().all(|status| *status == ContactStatus::Open) {
+/// Why Θ does not change near some states, where more is known than that its derivative is zero.
+fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, states: &CaseStates<S::State>) -> Option<String> {
+    let mut status = states.iter().flat_map(|state| &state.forces.status);
+    if status.all(|status| *status == ContactStatus::Open) {
         let reason = "the bodies do not touch there; bring them together by loads, the start or the counter surface";
         return Some(reason.into());
     }
-    objective.why_flat(state)
+    objective.why_flat(states)
 }

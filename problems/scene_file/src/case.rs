@@ -3,6 +3,7 @@
 use crate::bodies::body;
 use crate::grid_file;
 use crate::limit::limits;
+use crate::load_case::{CaseScene, cases};
 use crate::mesh_file::{self, MeshFile};
 use crate::{
     AccuracyName, CounterSection, MeshBodySection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile,
@@ -10,12 +11,15 @@ use crate::{
 };
 use contact::body::load_size;
 use contact::body::mesh::{Mesh, bounding_box};
+use contact::contact_objective::ContactObjective;
+use contact::contact_shape::ContactShape;
 use contact::cost::{Limit, Measure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
+use contact::load_cases::{CasesCost, LoadCase, Over, WeightedCase};
 use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
 use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
-use contact::solvers::{SolverKind, SolverPlan, Wanted};
+use contact::solvers::{Processes, SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
 use exchange::gmsh::GmshMesh;
 use std::path::Path;
@@ -38,6 +42,10 @@ pub struct Case {
     pub start: Option<Vec<f64>>,
     /// What is minimised.
     pub objective: Objective,
+    /// The load cases, at least one; all that differ.
+    pub cases: Vec<CaseScene>,
+    /// How they are rated together.
+    pub over: Over,
     /// The limits of what the shape leads to.
     pub limits: Vec<Limit>,
     /// What proposes trial points.
@@ -90,14 +98,18 @@ impl Case {
             let height = scene.heights().map_or(0.0, |heights| heights.start_height);
             wanted.at(&blocks.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
-        let limits = limits(&file.limit, &objective, scene.heights().is_none())?;
+        let cases = cases(file, &scene)?;
+        let limits = limits(&file.limit, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
+        let limits = limits.into_iter().map(|limit| of_first_equal(limit, &cases)).collect::<Vec<_>>();
         let tolerance = file.optimizer.tolerance.unwrap_or_else(|| usual_tolerance(&limits));
-        let method = method(&objective, file.optimizer.method)?;
+        let method = method(&objective, file.optimizer.method, cases.len() > 1 || !limits.is_empty())?;
         check_accuracy(&objective, file.optimizer.accuracy)?;
         Ok(Self {
             scene,
             start,
             objective,
+            cases,
+            over: file.objective.over,
             limits,
             method,
             solver: file.solver.kind,
@@ -118,10 +130,50 @@ impl Case {
         self.objective.measure(problem)
     }
 
-    /// How the scene is to be solved.
-    pub fn plan(&self, wanted: Wanted) -> SolverPlan {
-        let Self { preconditioner, clusters, .. } = *self;
-        SolverPlan { scene: self.scene.clone(), kind: self.solver, preconditioner, clusters, wanted }
+    /// How every load case is to be solved.
+    pub fn plans(&self, wanted: Wanted) -> impl Iterator<Item = SolverPlan> {
+        let Self { preconditioner, clusters, solver: kind, .. } = *self;
+        let scenes = self.cases.iter().map(|case| case.scene.clone());
+        scenes.map(move |scene| SolverPlan { scene, kind, preconditioner, clusters, wanted })
+    }
+
+    /// Θ over all load cases, with solvers that are prepared in some processes.
+    ///
+    /// # Errors
+    /// As [`Processes::solver`], [`Case::measure`] and [`ContactObjective::of_cases`].
+    pub fn prepared(&self, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, SceneError> {
+        let case = |(case, plan): (&CaseScene, SolverPlan)| {
+            let shape = ContactShape::by(processes.solver(plan)?);
+            let measure = self.measure(shape.problem())?;
+            Ok(LoadCase { name: case.name.clone(), weight: case.weight, shape, measure })
+        };
+        let cases = self.cases.iter().zip(self.plans(wanted)).map(case).collect::<Result<_, SceneError>>()?;
+        ContactObjective::of_cases(cases, self.over, &self.limits)
+    }
+
+    /// Θ over all load cases as a function of their outputs, with their problems; no solver is prepared.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`], [`Case::measure`] and [`CasesCost::new`].
+    pub fn cost(&self) -> Result<(CasesCost, Vec<ContactProblem>), SceneError> {
+        let problem = |case: &CaseScene| ContactProblem::new(case.scene.clone());
+        let problems = self.cases.iter().map(problem).collect::<Result<Vec<_>, SceneError>>()?;
+        let weighted = |(case, problem): (_, _)| {
+            let CaseScene { name, weight, .. }: &CaseScene = case;
+            Ok(WeightedCase { name, weight: *weight, measure: self.measure(problem)?, problem })
+        };
+        let weighted = self.cases.iter().zip(&problems).map(weighted).collect::<Result<Vec<_>, SceneError>>()?;
+        let cost = CasesCost::new(&weighted, self.over, &self.limits)?;
+        Ok((cost, problems))
+    }
+
+    /// The case with changed blocks in all its scenes; a scene of a mesh stays as it is.
+    #[must_use]
+    pub fn with_blocks(mut self, change: impl Fn(&mut Blocks)) -> Self {
+        self.scene = self.scene.with_blocks(&change);
+        let changed = |case: CaseScene| CaseScene { scene: case.scene.clone().with_blocks(&change), ..case };
+        self.cases = self.cases.into_iter().map(changed).collect();
+        self
     }
 }
 
@@ -317,17 +369,24 @@ fn start(
     Ok((mean, Some(controls)))
 }
 
-/// The method asked for, or the one that suits the objective.
-fn method(objective: &Objective, asked: Option<MethodName>) -> Result<MethodName, SceneError> {
-    match (objective.is_of_pressures(), asked) {
-        (true, None) => Ok(MethodName::Composite),
-        (false, None) => Ok(MethodName::Bundle),
-        (false, Some(MethodName::Composite)) => {
-            let allowed =
-                "\"bundle\" with this objective: the composite model takes functions of the contact pressures alone";
+/// A limit of a case that is solved with an equal one, as a limit of that one.
+fn of_first_equal(limit: Limit, cases: &[CaseScene]) -> Limit {
+    let first = |name: &String| cases.iter().find(|case| case.equal.contains(name)).map(|case| case.name.clone());
+    Limit { case: limit.case.as_ref().map(|name| first(name).unwrap_or_else(|| name.clone())), ..limit }
+}
+
+/// The method asked for, or the one that suits the objective: functions of the displacements are outputs like others
+/// where several cases or limits go with them.
+fn method(objective: &Objective, asked: Option<MethodName>, has_more: bool) -> Result<MethodName, SceneError> {
+    let composite = !objective.is_of_displacements() || (has_more && !objective.has_unknown_kinks());
+    match asked {
+        None if composite => Ok(MethodName::Composite),
+        None => Ok(MethodName::Bundle),
+        Some(MethodName::Composite) if objective.has_unknown_kinks() => {
+            let allowed = "\"bundle\" with this objective, a maximum over points: the composite model takes smooth functions and functions of the contact pressures";
             Err(SceneError::out_of_range("optimizer.method", "composite", allowed))
         }
-        (_, Some(method)) => Ok(method),
+        Some(method) => Ok(method),
     }
 }
 

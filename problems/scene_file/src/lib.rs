@@ -14,9 +14,11 @@ mod contact_section;
 mod grid_file;
 mod lattice;
 mod limit;
+mod load_case;
 mod mesh_file;
 mod objective;
 mod print;
+mod region;
 mod schema;
 mod setting;
 mod settings;
@@ -34,7 +36,9 @@ pub use case::{Case, default_subdomains};
 pub use contact_section::{ContactSection, FrictionSection};
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::{LimitSection, QuantityName};
-pub use objective::{BodyName, MeasureName, Objective, ObjectiveSection, RegionSection, WantedSection};
+pub use load_case::{CaseBodySection, CaseScene, CaseSection};
+pub use objective::{AxisName, MeasureName, Objective, ObjectiveSection, WantedSection};
+pub use region::{BodyName, RegionSection};
 pub use schema::schema;
 pub use setting::{Setting, check_path};
 pub use settings::{AccuracyName, MeshSection, MethodName, OptimizerSection, OutputSection, SolverSection};
@@ -99,6 +103,9 @@ pub struct SceneFile {
     /// What is minimised.
     #[serde(default)]
     pub objective: ObjectiveSection,
+    /// Load cases: the shape is rated by its states in all of them. Default none: the scene itself is the only one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub case: Vec<CaseSection>,
     /// Bounds on what the shape leads to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limit: Vec<LimitSection>,

@@ -2,9 +2,11 @@
 
 use crate::grid_file;
 use crate::wanted_pressure::WantedPressure;
-use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
+use crate::region::{RegionSection, region};
+use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
+use contact::load_cases::Over;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -19,9 +21,11 @@ const DEFAULT_STRESS_EXPONENT: f64 = 8.0;
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectiveSection {
     /// Of the contact pressures: integral or sum of powers, largest value, mean squared deviation from a wanted
-    /// pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region,
-    /// compliance.
+    /// pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, its largest
+    /// value, largest displacement, compliance. Of the shape: the volume of the lower body.
     pub measure: MeasureName,
+    /// With several cases: the largest of their measures, each times the weight of its case, or the sum.
+    pub over: Over,
     /// Exponent p of the pressure norm and of the stress norm. Default 4 for the pressure norm, 8 for the stress norm.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
@@ -38,10 +42,38 @@ pub struct ObjectiveSection {
     /// For `pressure-deviation`, and required there: the wanted pressure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wanted: Option<WantedSection>,
-    /// For `stress-norm`: the cells whose centres lie in this box at the start, faces included, and which belong to the
-    /// volume; all cells without it.
+    /// For `stress-norm` and `stress`: the cells whose centres lie in this box at the start, faces included, and which
+    /// belong to the volume; all cells without it. For `displacement`: the nodes of these cells, or of the face.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<RegionSection>,
+    /// For `displacement`: the component whose largest value counts, with its sign. Default the length of the
+    /// displacement.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub component: Option<AxisName>,
+    /// For `stress`: leaves out the cells that have a node held by a support, where stresses concentrate. Default false.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub without_held: Option<bool>,
+}
+
+/// A component of displacements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are the meaning")]
+pub enum AxisName {
+    U1,
+    U2,
+    U3,
+}
+
+impl AxisName {
+    /// Its axis, from 0.
+    pub(crate) fn axis(self) -> usize {
+        match self {
+            Self::U1 => 0,
+            Self::U2 => 1,
+            Self::U3 => 2,
+        }
+    }
 }
 
 /// Which function is minimised.
@@ -60,8 +92,14 @@ pub enum MeasureName {
     OpenArea,
     /// ((1/V₀) Σ V σ_vM^p)^{1/p}.
     StressNorm,
+    /// max σ_vM.
+    Stress,
+    /// max u_i or max |u|.
+    Displacement,
     /// f·u.
     Compliance,
+    /// V.
+    Volume,
 }
 
 /// A wanted contact pressure.
@@ -83,39 +121,6 @@ pub enum WantedSection {
     },
 }
 
-/// A box in one body or in all, or a volume of a mesh.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct RegionSection {
-    /// The body. Default all bodies.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub body: Option<BodyName>,
-    /// Smallest and largest x1. Default no bound.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
-    pub x1: Option<[f64; 2]>,
-    /// Smallest and largest x2. Default no bound.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
-    pub x2: Option<[f64; 2]>,
-    /// Smallest and largest x3. Default no bound.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
-    pub x3: Option<[f64; 2]>,
-    /// A physical volume of the mesh. Default all volumes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub volume: Option<String>,
-}
-
-/// One of the bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are the meaning")]
-pub enum BodyName {
-    Lower,
-    Upper,
-}
-
 /// What is minimised, checked as far as no mesh is needed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Objective {
@@ -125,6 +130,8 @@ pub enum Objective {
     Deviation(WantedPressure),
     /// A function of the displacements.
     Field(FieldMeasure),
+    /// The volume of the lower body.
+    Volume,
 }
 
 impl Objective {
@@ -154,9 +161,19 @@ impl Objective {
                 Some(pressure) => Self::Pressure(PressureMeasure::OpenArea { pressure }),
             },
             MeasureName::StressNorm => Self::Field(FieldMeasure::StressNorm {
-                region: region(section.region.as_ref())?,
+                region: region("objective.region", section.region.as_ref())?,
                 exponent: exponent(DEFAULT_STRESS_EXPONENT),
             }),
+            MeasureName::Stress => Self::Field(FieldMeasure::PeakStress {
+                region: region("objective.region", section.region.as_ref())?,
+                without_held: section.without_held.unwrap_or_default(),
+            }),
+            MeasureName::Displacement => Self::Field(FieldMeasure::Displacement {
+                region: region("objective.region", section.region.as_ref())?,
+                component: section.component.map(AxisName::axis),
+                least: false,
+            }),
+            MeasureName::Volume => Self::Volume,
             MeasureName::Compliance => Self::Field(FieldMeasure::Compliance),
         })
     }
@@ -172,17 +189,24 @@ impl Objective {
                 Measure::Pressure(PressureMeasure::Deviation { wanted: wanted.at(&contact_places(problem))? })
             }
             Self::Field(measure) => Measure::Field(measure.clone()),
+            Self::Volume => Measure::Volume,
         })
     }
 
-    /// Whether it is a function of the contact pressures, which the composite model takes.
-    pub fn is_of_pressures(&self) -> bool {
-        !matches!(self, Self::Field(_))
+    /// Whether it has kinks that the composite model does not know: maxima over points of the bodies.
+    pub fn has_unknown_kinks(&self) -> bool {
+        matches!(self, Self::Field(measure) if !measure.is_smooth())
+    }
+
+    /// Whether it is a function of the displacements.
+    pub fn is_of_displacements(&self) -> bool {
+        matches!(self, Self::Field(_))
     }
 
     /// Whether its value can come near 0 or change its sign while the load stays: deviation, open area and compliance.
     pub(crate) fn can_vanish(&self) -> bool {
         match self {
+            Self::Volume => false,
             Self::Deviation(_) => true,
             Self::Pressure(measure) => match measure {
                 PressureMeasure::Deviation { .. } | PressureMeasure::OpenArea { .. } => true,
@@ -208,7 +232,7 @@ fn missing(field: &str, allowed: &str) -> SceneError {
 
 /// Refuses fields that belong to another measure than the one of the section.
 fn refuse_foreign_fields(section: &ObjectiveSection) -> Result<(), SceneError> {
-    use MeasureName::{OpenArea, PressureDeviation, PressureNorm, StressNorm};
+    use MeasureName::{Displacement, OpenArea, PressureDeviation, PressureNorm, Stress, StressNorm};
     let exponent = section.exponent.map(|exponent| exponent.to_string());
     let pressure = section.pressure.map(|pressure| pressure.to_string());
     let weight = section.weight.map(|weight| match weight {
@@ -221,7 +245,9 @@ fn refuse_foreign_fields(section: &ObjectiveSection) -> Result<(), SceneError> {
         ("weight", weight, &[PressureNorm], "pressure norm"),
         ("pressure", pressure, &[OpenArea], "open area"),
         ("wanted", table(section.wanted.is_some()), &[PressureDeviation], "pressure deviation"),
-        ("region", table(section.region.is_some()), &[StressNorm], "stress norm"),
+        ("region", table(section.region.is_some()), &[StressNorm, Stress, Displacement], "stresses and displacements"),
+        ("component", section.component.map(|axis| format!("{axis:?}")), &[Displacement], "displacement"),
+        ("without_held", section.without_held.map(|held| held.to_string()), &[Stress], "stress"),
     ] {
         if let Some(value) = value.filter(|_| !measures.contains(&section.measure)) {
             let allowed = format!("no {field} with this measure, only with the {words}");
@@ -229,22 +255,4 @@ fn refuse_foreign_fields(section: &ObjectiveSection) -> Result<(), SceneError> {
         }
     }
     Ok(())
-}
-
-fn region(section: Option<&RegionSection>) -> Result<Region, SceneError> {
-    let section = section.cloned().unwrap_or_default();
-    let (mut lower, mut upper) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
-    for (axis, bounds) in [section.x1, section.x2, section.x3].into_iter().enumerate() {
-        let Some([low, high]) = bounds else { continue };
-        if low > high {
-            let field = format!("objective.region.x{}", axis + 1);
-            return Err(SceneError::out_of_range(field, format!("[{low}, {high}]"), "the smaller number first"));
-        }
-        (lower[axis], upper[axis]) = (low, high);
-    }
-    let body = section.body.map(|body| match body {
-        BodyName::Lower => 0,
-        BodyName::Upper => 1,
-    });
-    Ok(Region { lower, upper, body, volume: section.volume, face: None })
 }

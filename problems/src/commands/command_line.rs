@@ -131,7 +131,7 @@ fn tell_of_files(loaded: &LoadedScene) {
     let notes = &loaded.case.notes;
     notes.iter().for_each(|note| notice(note));
     if !notes.is_empty() {
-        let megabytes = memory::needed(&loaded.case.plan(Wanted::States)) / 1e6;
+        let megabytes = loaded.case.plans(Wanted::States).map(|plan| memory::needed(&plan)).sum::<f64>() / 1e6;
         notice(&format!("a state takes about {} MB of memory", number(megabytes.ceil())));
     }
 }

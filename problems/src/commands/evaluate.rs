@@ -27,19 +27,19 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let shape = SolvedShape::at(objective, &controls).inspect_err(abandon)?;
     let state_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
+    let evaluation = objective.differentiate(&controls, &shape.states).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let result = result(objective, &shape, &evaluation)?;
     let warnings = checks(objective, &shape, arguments)?;
     let states = shape_facts::states(objective, &[&shape], ["kink.smallest_margin", "kink.weakly_active"]);
-    let diagnosis = arguments.diagnosis.diagnose.then(|| solver.diagnose(&shape.state)).transpose()?;
-    let mut rest = solver_facts(&shape.state)?;
-    rest.extend(work(&shape.state, [state_seconds, subgradient_seconds])?);
+    let diagnosis = arguments.diagnosis.diagnose.then(|| objective.cases().case(shape.worst).diagnose(shape.state())).transpose()?;
+    let mut rest = solver_facts(shape.state())?;
+    rest.extend(work(shape.state(), [state_seconds, subgradient_seconds])?);
     rest.push(match diagnosis {
         Some(diagnosis) => Fact::object("diagnosis", "diagnosis", &diagnosis, diagnosis.to_string())?,
         None => Fact::json("diagnosis", &None::<()>)?,
     });
-    let usage = session.processes.usage(shape.state.solver)?;
+    let usage = session.processes.usage(shape.state().solver)?;
     rest.extend(closing_facts(&warnings, &arguments.left_out(solver), usage.as_ref())?);
     let groups = vec![Group::new("", result), Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
@@ -94,7 +94,7 @@ fn result<W>(
 
 /// What an engineer asks of a shape, in two lines: how it is loaded, and what is in contact.
 fn lead(objective: &ContactObjective, shape: &SolvedShape) -> Vec<String> {
-    let counts = shape.state.forces.counts();
+    let counts = shape.state().forces.counts();
     let value = |root: PressureRoot| format!("{} {} MPa", raised(&root.name), number(root.value));
     let plain = || format!("objective Θ {} {}", number(shape.value), raised(&objective.unit()));
     let value = objective.pressure_root(shape.value).map_or_else(plain, value);

@@ -1,10 +1,13 @@
 //! The limits of a scene in a certificate, computed again.
 
-use contact::cost::{Limit, VolumeLimits};
+use contact::cost::{LimitSide, LimitedQuantity};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
+use contact::load_cases::{Bound, CasesCost};
 use nonsmooth::{Certificate, CompositeProof, ConstraintKind, Vector};
+use scene_file::Case;
 use serde::Serialize;
+use std::ops::Range;
 
 /// Largest difference of the norm, in norms of its subgradients, and of the error, in values of Θ, that is rounding.
 pub const MAX_ROUNDING: f64 = 1e-8;
@@ -30,13 +33,16 @@ impl Number {
 pub struct LimitCheck {
     /// The limited quantity.
     pub quantity: &'static str,
+    /// The case in which it holds; none for all, or the only one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// The value of the constraint, in the unit of the quantity: recorded, and computed from the pressures behind the
-    /// composite proof, where there is one, or from the mesh.
-    pub excess: Number,
+    /// composite proof, where there is one, or from the mesh. None for quantities that only states have.
+    pub excess: Option<Number>,
     pub multiplier: f64,
     /// Largest difference of the linearizations at the point from rows of the Jacobian of the pressures, or from the
-    /// derivative of the volume, relative to their sizes.
-    pub cuts: f64,
+    /// derivative of the volume, relative to their sizes. None for quantities that only states have.
+    pub cuts: Option<f64>,
     pub agrees: bool,
 }
 
@@ -44,49 +50,65 @@ impl LimitCheck {
     /// The limits in the certificate; none if it does not hold these.
     pub fn all(
         certificate: &Certificate,
-        limits: &[Limit],
-        problem: &ContactProblem,
+        case: &Case,
+        (cost, problems): (&CasesCost, &[ContactProblem]),
     ) -> Result<Option<Vec<Self>>, SceneError> {
-        let ordered = Limit::in_order(limits);
-        let shape = VolumeLimits::new(&ordered, problem)?.constraints(problem, &certificate.point);
-        let first = ordered.len() - shape.len();
-        let kinds: Vec<ConstraintKind> = ordered.iter().map(Limit::kind).collect();
+        let names = case.cases.iter().map(|case| case.name.as_str());
+        let bounds = Bound::all(&case.limits, &names.zip(problems).collect::<Vec<_>>())?;
+        let kinds: Vec<ConstraintKind> = bounds.iter().map(Bound::kind).collect();
         let Some(proof) = certificate.constraints.as_ref().filter(|proof| proof.kinds == kinds) else {
             return Ok(None);
         };
         let multipliers = proof.multipliers();
-        let check = |(index, limit): (usize, &Limit)| {
-            let recorded = proof.values[index];
-            let composite = certificate.composite.as_ref();
-            let count = problem.boundary.points.len();
-            let own = index.checked_sub(first).map(|index| &shape[index]);
-            let peak = || {
-                composite.map(|composite| {
-                    composite.outputs.iter().rev().take(count).copied().fold(f64::NEG_INFINITY, f64::max) - limit.bound
-                })
+        let composite = certificate.composite.as_ref();
+        let check = |(index, bound): (usize, &Bound)| {
+            let limit = &bound.limit;
+            let own = bound.of_shape(&problems[bound.case], &certificate.point);
+            let range = cost.pressure_range(bound.case);
+            let is_peak = limit.quantity == LimitedQuantity::PeakPressure && limit.side == LimitSide::AtMost;
+            let pressures = composite.filter(|_| is_peak);
+            let peak = |composite: &CompositeProof| {
+                let pressures = composite.outputs.iter().skip(range.start).take(range.len());
+                pressures.copied().fold(f64::NEG_INFINITY, f64::max) - limit.bound
             };
-            let recomputed = own.map(|(value, _)| *value).or_else(peak).unwrap_or(recorded);
-            let excess = Number::new(recorded, recomputed, MAX_ROUNDING * limit.bound);
+            let recomputed = own.as_ref().map(|(value, _)| *value).or_else(|| pressures.map(peak));
+            let rounding = MAX_ROUNDING * limit.bound.abs();
+            let excess = recomputed.map(|recomputed| Number::new(proof.values[index], recomputed, rounding));
             let at_point = proof.cuts.iter().filter(|cut| cut.constraint == index && cut.point == certificate.point);
-            let difference = |cut: &nonsmooth::report::ConstraintCut| match (own, composite) {
-                (Some((_, slope)), _) => (slope - &cut.subgradient).norm() / slope.norm().max(f64::MIN_POSITIVE),
-                (None, Some(composite)) => nearest_row((cut.value, &cut.subgradient), composite, count, limit.bound),
-                (None, None) => 0.0,
+            let difference = |cut: &nonsmooth::report::ConstraintCut| match (&own, pressures) {
+                (Some((_, slope)), _) => Some((slope - &cut.subgradient).norm() / slope.norm().max(f64::MIN_POSITIVE)),
+                (None, Some(composite)) => {
+                    Some(nearest_row((cut.value, &cut.subgradient), composite, range.clone(), limit.bound))
+                }
+                (None, None) => None,
             };
-            let cuts = at_point.map(difference).fold(0.0, f64::max);
-            let agrees = excess.agrees && cuts <= MAX_ROUNDING;
-            Self { quantity: limit.quantity.name(), excess, multiplier: multipliers[index], cuts, agrees }
+            let known = own.is_some() || pressures.is_some();
+            let cuts = known.then(|| at_point.filter_map(difference).fold(0.0, f64::max));
+            let agrees = excess.as_ref().is_none_or(|excess| excess.agrees);
+            let agrees = agrees && cuts.is_none_or(|cuts| cuts <= MAX_ROUNDING);
+            let (quantity, case) = (limit.quantity.name(), limit.case.clone());
+            Self { quantity, case, excess, multiplier: multipliers[index], cuts, agrees }
         };
-        Ok(Some(ordered.iter().enumerate().map(check).collect()))
+        Ok(Some(bounds.iter().enumerate().map(check).collect()))
+    }
+
+    /// The quantity with its case.
+    pub fn name(&self) -> String {
+        let case = self.case.as_ref().map_or_else(String::new, |case| format!(" in case \"{case}\""));
+        format!("{}{case}", self.quantity)
     }
 }
 
-/// The relative difference of a linearization at the point from that of the node that is nearest to it.
-fn nearest_row((value, subgradient): (f64, &Vector), composite: &CompositeProof, count: usize, limit: f64) -> f64 {
+/// The relative difference of a linearization at the point from that of the node that is nearest to it; the pressures
+/// are the outputs of a range.
+fn nearest_row(
+    (value, subgradient): (f64, &Vector),
+    composite: &CompositeProof,
+    range: Range<usize>,
+    limit: f64,
+) -> f64 {
     let size = subgradient.norm().max(f64::MIN_POSITIVE);
-    // The pressures are the last outputs.
-    let first = composite.outputs.len().saturating_sub(count);
-    let rows = composite.outputs.iter().zip(composite.jacobian.row_iter()).skip(first);
+    let rows = composite.outputs.iter().zip(composite.jacobian.row_iter()).skip(range.start).take(range.len());
     rows.map(|(pressure, row)| {
         let slope = (row.transpose() - subgradient).norm() / size;
         slope.max((pressure - limit - value).abs() / limit)

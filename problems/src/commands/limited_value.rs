@@ -6,7 +6,7 @@ use contact::cost::Limit;
 use serde_json::{Map, json};
 
 /// A limit with its quantity at a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LimitedValue {
     /// The limit.
     pub limit: Limit,
@@ -22,9 +22,11 @@ impl LimitedValue {
 
     /// The limit in words: `peak-pressure at most 3400 MPa`.
     pub fn words(&self) -> String {
-        let Limit { quantity, side, bound } = self.limit;
+        let Limit { quantity, side, bound, case } = &self.limit;
         let side = side.name().replace('_', " ");
-        format!("{} {side} {} {}", quantity.name(), number(bound), raised(quantity.unit())).trim_end().to_owned()
+        let words = format!("{} {side} {} {}", quantity.name(), number(*bound), raised(quantity.unit()));
+        let case = case.as_ref().map_or_else(String::new, |case| format!(" in case \"{case}\""));
+        words.trim_end().to_owned() + &case
     }
 
     /// The value, and whether the limit is kept.
@@ -38,7 +40,10 @@ impl LimitedValue {
 
     /// The keys of the limit in JSON.
     pub fn keys(&self) -> Map<String, serde_json::Value> {
-        let Limit { quantity, side, bound } = self.limit;
-        Map::from_iter([("quantity".to_owned(), json!(quantity.name())), (side.name().to_owned(), json!(bound))])
+        let Limit { quantity, side, bound, case } = &self.limit;
+        let mut keys =
+            Map::from_iter([("quantity".to_owned(), json!(quantity.name())), (side.name().to_owned(), json!(bound))]);
+        keys.extend(case.iter().map(|case| ("case".to_owned(), json!(case))));
+        keys
     }
 }

@@ -10,8 +10,6 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, last_begun};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{differences, is_below};
-use contact::contact_objective::ContactCost;
-use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
 use scene_file::{SceneFile, read_text};
 use serde::Serialize;
@@ -57,27 +55,20 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
-    let problem = ContactProblem::new(case.scene.clone())?;
-    let measure = case.measure(&problem)?;
+    let (cost, problems) = case.cost()?;
     let foreign = |error| {
         Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
     };
-    let check = certificate.recheck(problem.admissible.polyhedron()).map_err(foreign)?;
-    // Functions of the displacements have no composite model, and their certificates no proof of this kind.
-    let cost = ContactCost::new(measure, &case.limits, &problem)?;
-    let proof = match (certificate.composite.as_ref(), &cost) {
-        (Some(proof), ContactCost::Pressure(cost)) => Some(proof.recheck(&certificate, cost).map_err(foreign)?),
-        (Some(_), ContactCost::Field(_)) => {
-            let reason = "the certificate has a composite proof, and the objective of the scene has no composite model";
-            return Err(Failure::Computation(format!("{}: {reason}", folder.display())));
-        }
-        (None, _) => None,
-    };
+    let check = certificate.recheck(problems[0].admissible.polyhedron()).map_err(foreign)?;
+    let proof = certificate.composite.as_ref().map(|proof| proof.recheck(&certificate, &cost)).transpose();
+    let proof = proof.map_err(foreign)?;
     let mut result = RecheckJson::new(&certificate, &check, certificate.point == controls);
     result.agrees &= proof.is_none_or(|proof| proof.largest() <= MAX_ROUNDING);
     result.composite = proof;
-    let checks =
-        if case.limits.is_empty() { Some(vec![]) } else { LimitCheck::all(&certificate, &case.limits, &problem)? };
+    let checks = match case.limits.is_empty() {
+        true => Some(vec![]),
+        false => LimitCheck::all(&certificate, &case, (&cost, &problems))?,
+    };
     result.limits = checks.ok_or_else(|| {
         let words = "the certificate does not hold the limits of its scene";
         Failure::Computation(format!("{}: {words}", folder.display()))
@@ -160,7 +151,9 @@ impl RecheckJson {
         let mut numbers =
             vec![number("aggregate norm", &self.aggregate_norm), number("aggregate error", &self.aggregate_error)];
         numbers.extend(
-            self.limits.iter().map(|limit| number(&format!("{} beyond its limit", limit.quantity), &limit.excess)),
+            self.limits
+                .iter()
+                .filter_map(|limit| Some(number(&format!("{} beyond its limit", limit.name()), limit.excess.as_ref()?))),
         );
         let columns = ["recorded", "recomputed", "rounding", ""].map(str::to_owned).into();
         let rough = |name: &str, value| Fact::new("", name, Value::Rough(value), "");
@@ -175,9 +168,10 @@ impl RecheckJson {
             rest.push(rough("pressure measure", *outer));
             rest.push(rough("cuts", *cuts));
         }
-        for LimitCheck { quantity, multiplier, cuts, .. } in &self.limits {
-            rest.push(Fact::new("", &format!("multiplier of the {quantity}"), *multiplier, ""));
-            rest.push(rough(&format!("linearizations of the {quantity}"), *cuts));
+        for limit in &self.limits {
+            rest.push(Fact::new("", &format!("multiplier of the {}", limit.name()), limit.multiplier, ""));
+            let cuts = limit.cuts.map_or_else(|| "not computed again".to_owned().into(), Value::Rough);
+            rest.push(Fact::new("", &format!("linearizations of the {}", limit.name()), cuts, ""));
         }
         let numbers = Group { columns, ..Group::new("", numbers) };
         Facts { lead, groups: vec![numbers, Group::new("", rest)] }.text(true)

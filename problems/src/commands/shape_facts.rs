@@ -37,7 +37,7 @@ pub fn objective(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<F
 
 /// Contact areas, where the open area is the objective.
 pub fn contact_areas(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<Fact> {
-    let areas = shapes.iter().map(|shape| objective.contact_areas(&shape.state)).collect::<Option<Vec<_>>>();
+    let areas = shapes.iter().map(|shape| objective.contact_areas(shape.worst, shape.state())).collect::<Option<Vec<_>>>();
     let Some(areas) = areas else { return Vec::new() };
     let row = |key, name, value: fn(&contact::cost::ContactAreas) -> f64| {
         Fact::row(key, name, areas.iter().map(|areas| value(areas).into()).collect(), "mm²")
@@ -53,8 +53,8 @@ pub fn contact_areas(objective: &ContactObjective, shapes: &[&SolvedShape]) -> V
 /// The bound of the objective, the force, the numbers of nodes per status, and residuals. `kinks`: the names in JSON of
 /// the two facts on the nearest kink.
 pub fn states(objective: &ContactObjective, shapes: &[&SolvedShape], kinks: [&'static str; 2]) -> Vec<Fact> {
-    let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
-    let bound = |shape: &SolvedShape| objective.lower_bound(force(shape));
+    let force = |shape: &SolvedShape| shape.state().forces.total_normal_force();
+    let bound = |shape: &SolvedShape| objective.lower_bound(&shape.states);
     let above_zero = |shape: &SolvedShape| bound(shape).filter(|bound| *bound > 0.0);
     let row = |key, name, unit: &str, value: &dyn Fn(&SolvedShape) -> Value| row(key, name, unit, shapes, value);
     let rough =
@@ -70,20 +70,20 @@ pub fn states(objective: &ContactObjective, shapes: &[&SolvedShape], kinks: [&'s
         facts.push(row("", "Θ over that", "", &over).detail());
     }
     facts.extend([
-        row("status.open", "open contact nodes", "", &|shape| shape.state.forces.counts().open.into()),
-        row("status.stick", "sticking contact nodes", "", &|shape| shape.state.forces.counts().stick.into()),
-        row("status.slip", "slipping contact nodes", "", &|shape| shape.state.forces.counts().slip.into()),
-        rough("residuals.equilibrium", "residual: equilibrium", |shape| shape.state.forces.residuals.equilibrium)
+        row("status.open", "open contact nodes", "", &|shape| shape.state().forces.counts().open.into()),
+        row("status.stick", "sticking contact nodes", "", &|shape| shape.state().forces.counts().stick.into()),
+        row("status.slip", "slipping contact nodes", "", &|shape| shape.state().forces.counts().slip.into()),
+        rough("residuals.equilibrium", "residual: equilibrium", |shape| shape.state().forces.residuals.equilibrium)
             .meaning("this residual and the next four are relative to the load"),
         rough("residuals.complementarity", "residual: complementarity", |shape| {
-            shape.state.forces.residuals.complementarity
+            shape.state().forces.residuals.complementarity
         }),
-        rough("residuals.friction_cone", "residual: friction cone", |shape| shape.state.forces.residuals.friction_cone),
-        rough("residuals.dissipation", "residual: dissipation", |shape| shape.state.forces.residuals.dissipation),
-        rough("residuals.newton", "residual: Newton", |shape| shape.state.forces.residuals.newton),
-        rough(kinks[0], "margin of the nearest kink", |shape| shape.state.forces.kink.smallest_margin)
+        rough("residuals.friction_cone", "residual: friction cone", |shape| shape.state().forces.residuals.friction_cone),
+        rough("residuals.dissipation", "residual: dissipation", |shape| shape.state().forces.residuals.dissipation),
+        rough("residuals.newton", "residual: Newton", |shape| shape.state().forces.residuals.newton),
+        rough(kinks[0], "margin of the nearest kink", |shape| shape.state().forces.kink.smallest_margin)
             .meaning("relative distance of a contact node from a change between open, stick and slip"),
-        row(kinks[1], "weakly active nodes", "", &|shape| shape.state.forces.kink.weakly_active.into()).detail(),
+        row(kinks[1], "weakly active nodes", "", &|shape| shape.state().forces.kink.weakly_active.into()).detail(),
     ]);
     facts
 }

@@ -6,11 +6,10 @@ use crate::commands::failure::Failure;
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::plain_unit;
 use contact::communication::InProcess;
-use contact::contact_objective::ContactCost;
-use contact::contact_shape::{ContactShape, ContactState};
-use contact::equilibrium::ContactProblem;
+use contact::contact_shape::{AnyState, ContactState};
 use contact::error::SceneError;
 use contact::fields::Fields;
+use contact::load_cases::CaseStates;
 use contact::memory;
 use contact::plausibility::Warning;
 use contact::solvers::{Processes, SolverKind, Wanted};
@@ -45,9 +44,7 @@ pub fn wanted(case: &Case) -> Wanted {
 }
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
-    let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
-    let measure = case.measure(shape.problem())?;
-    Ok(ContactObjective::new(shape, measure, &case.limits)?)
+    Ok(case.prepared(wanted, processes)?)
 }
 
 /// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing
@@ -57,10 +54,9 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
 /// [`SceneError`] naming the field.
 pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
     if processes.is_alone() {
-        memory::check(&case.plan(wanted), &InProcess)?;
+        case.plans(wanted).try_for_each(|plan| memory::check(&plan, &InProcess))?;
     }
-    let problem = ContactProblem::new(case.scene.clone())?;
-    ContactCost::new(case.measure(&problem)?, &case.limits, &problem).map(|_| ())
+    case.cost().map(|_| ())
 }
 
 /// What a file of fields says of the objective.
@@ -68,16 +64,18 @@ pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
     Note::new("objective", plain_unit(&objective.unit()), NoteValue::Number(value))
 }
 
-/// A shape, its state as accurate as rounding allows, and the objective there.
+/// A shape, its states as accurate as rounding allows, and the objective there.
 #[derive(Debug)]
 pub struct SolvedShape {
     /// Controls of the shape, mm.
     pub controls: Vector,
-    /// The contact state of the shape.
-    pub state: ContactState,
+    /// The contact states of the shape in all load cases.
+    pub states: CaseStates<AnyState>,
+    /// The case that is worst: the first with the largest weighted measure.
+    pub worst: usize,
     /// The objective Θ at the shape.
     pub value: f64,
-    /// Largest contact pressure, MPa.
+    /// Largest contact pressure in all cases, MPa.
     pub peak_pressure: f64,
     /// The limits with their quantities at the shape.
     pub limits: Vec<LimitedValue>,
@@ -86,13 +84,23 @@ pub struct SolvedShape {
 impl SolvedShape {
     /// Solves the contact problem of a shape.
     pub fn at(objective: &ContactObjective, controls: &Vector) -> Result<Self, Failure> {
-        let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST)?;
-        let value = objective.value(controls, &state);
-        let peak_pressure = objective.pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let values = objective.limited_values(controls, &state).into_iter();
-        let limits =
-            objective.limits().iter().zip(values).map(|(&limit, value)| LimitedValue { limit, value }).collect();
-        Ok(Self { controls: controls.clone(), state, value, peak_pressure, limits })
+        let states = objective.cases().solve(controls, None, Accuracy::TIGHTEST)?;
+        let (value, worst) = (objective.value(&states), objective.worst(&states));
+        let pressures = states.iter().flat_map(|state| objective.pressures(state));
+        let peak_pressure = pressures.fold(f64::NEG_INFINITY, f64::max);
+        let values = objective.limited_values(controls, &states).into_iter();
+        let limits = objective.limits().cloned().zip(values).map(|(limit, value)| LimitedValue { limit, value });
+        Ok(Self { controls: controls.clone(), value, worst, peak_pressure, limits: limits.collect(), states })
+    }
+
+    /// The state in the worst case, which is the only one of a scene without cases.
+    pub fn state(&self) -> &ContactState {
+        &self.states[self.worst]
+    }
+
+    /// Largest contact pressure in a case, MPa.
+    pub fn peak_of(&self, objective: &ContactObjective, case: usize) -> f64 {
+        objective.pressures(&self.states[case]).into_iter().fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Whether all limits are kept.
@@ -106,12 +114,12 @@ impl SolvedShape {
         shares.reduce(f64::max)
     }
 
-    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the position of every contact node
-    /// along its normal, which takes an adjoint, if it is asked for.
-    pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
-        let mut fields = objective.solver().fields(&self.state)?;
+    /// Displacements, stresses and contact fields in a case; with the sensitivity of Θ to the position of every contact
+    /// node along its normal, which takes an adjoint, if it is asked for.
+    pub fn fields(&self, objective: &ContactObjective, case: usize, sensitivities: bool) -> Result<Fields, Failure> {
+        let mut fields = objective.cases().case(case).fields(&self.states[case])?;
         if sensitivities {
-            fields.contact.set_sensitivity(&objective.position_sensitivity(&self.controls, &self.state)?);
+            fields.contact.set_sensitivity(&objective.position_sensitivity(&self.controls, &self.states)?);
         }
         Ok(fields)
     }
@@ -123,7 +131,17 @@ pub fn checks(
     shape: &SolvedShape,
     arguments: &Arguments,
 ) -> Result<Vec<Warning>, Failure> {
-    if arguments.results.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
+    let mut warnings = Vec::new();
+    let cases = shape.states.iter().enumerate().filter(|_| !arguments.results.no_checks);
+    for (index, state) in cases {
+        let (shape, name) = (objective.cases().case(index), objective.cases().name(index));
+        let named = |warning: Warning| match name.is_empty() {
+            true => warning,
+            false => Warning { text: format!("case \"{name}\": {}", warning.text), ..warning },
+        };
+        warnings.extend(shape.warnings(state)?.into_iter().map(named));
+    }
+    Ok(warnings)
 }
 
 /// The solver of a state and why it was taken.

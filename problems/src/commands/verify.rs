@@ -8,8 +8,9 @@ use crate::commands::loaded_scene::Session;
 use crate::commands::numbers::rounded;
 use crate::commands::solved_shape::{self, ContactObjective};
 use contact::body::mesh::smallest_extent;
-use contact::contact_shape::ContactState;
-use contact::equilibrium::{ContactStatus, Residuals};
+use contact::contact_shape::AnyState;
+use contact::equilibrium::Residuals;
+use contact::load_cases::CaseStates;
 use contact::solvers::Usage;
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -48,7 +49,9 @@ pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
     let control = controls::load(shape.problem(), case, ("--controls", arguments.shape.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
     let found = smooth_taylor_test(objective, &control);
-    let (here, step, test) = found.inspect_err(|_| folder.iter().for_each(Folder::abandon))?;
+    let (states, step, test) = found.inspect_err(|_| folder.iter().for_each(Folder::abandon))?;
+    let here = states.iter().min_by(|a, b| a.forces.kink.smallest_margin.total_cmp(&b.forces.kink.smallest_margin));
+    let here = here.ok_or_else(|| Failure::computation("a scene has at least one case"))?;
     let result = VerificationJson {
         test,
         smooth_step: step,
@@ -100,10 +103,10 @@ fn rest(result: &VerificationJson) -> String {
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
-) -> Result<(ContactState, f64, TaylorTest), Failure> {
+) -> Result<(CaseStates<AnyState>, f64, TaylorTest), Failure> {
     let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
-    let here = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
-    let step = smooth_step(objective, control, &direction, &here.forces.status)?;
+    let here = objective.cases().solve(control, None, Accuracy::TIGHTEST)?;
+    let step = smooth_step(objective, control, &direction, &here)?;
     let test = taylor_test(objective, control, &Direction::Given(direction), &taylor_steps(step))?;
     Ok((here, step, test))
 }
@@ -118,7 +121,7 @@ fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,
     direction: &Vector,
-    status: &[ContactStatus],
+    here: &CaseStates<AnyState>,
 ) -> Result<f64, Failure> {
     let problem = objective.solver().problem();
     let size = match problem.scene.heights() {
@@ -127,8 +130,8 @@ fn smooth_step(
     };
     let mut step = MAX_RELATIVE_STEP * size;
     let stays = |step: f64| -> Result<bool, Failure> {
-        let state = objective.solver().solve(&(control + direction * step), None, Accuracy::TIGHTEST)?;
-        Ok(state.forces.status == status)
+        let states = objective.cases().solve(&(control + direction * step), None, Accuracy::TIGHTEST)?;
+        Ok(states.iter().zip(here.iter()).all(|(state, here)| state.forces.status == here.forces.status))
     };
     for _shortening in 0..MAX_SHORTENINGS {
         if stays(step)? && stays(-step)? {

@@ -38,6 +38,16 @@ pub enum FieldMeasure {
 }
 
 impl FieldMeasure {
+    /// Its name in scene files and reports.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::StressNorm { .. } => "stress-norm",
+            Self::Compliance => "compliance",
+            Self::PeakStress { .. } => "stress",
+            Self::Displacement { .. } => "displacement",
+        }
+    }
+
     /// The unit of the value.
     pub fn unit(&self) -> &'static str {
         match self {

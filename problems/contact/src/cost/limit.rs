@@ -1,15 +1,23 @@
 //! Limits: quantities that a shape must keep on one side of a bound, or at it, beside the objective.
 
-use crate::equilibrium::ContactProblem;
+use crate::cost::FieldMeasure;
 use crate::error::SceneError;
-use nonsmooth::{ConstraintKind, Vector};
+use crate::names::find;
+use nonsmooth::ConstraintKind;
 
 /// What a limit bounds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum LimitedQuantity {
     /// The largest contact pressure, MPa.
     PeakPressure,
+    /// Σ A min(σ/σ₀, 1), mm²: the loaded area.
+    LoadedArea {
+        /// The pressure σ₀ > 0 from which a node counts with its whole area, MPa.
+        pressure: f64,
+    },
+    /// A function of the displacements, in its unit.
+    Field(FieldMeasure),
     /// The volume of the lower body over that of the scene at the start.
     RelativeVolume,
     /// The volume of the lower body, mm³.
@@ -28,10 +36,12 @@ pub enum LimitSide {
 }
 
 /// A limit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
     /// What it bounds.
     pub quantity: LimitedQuantity,
+    /// The load case in which it holds; none: in all.
+    pub case: Option<String>,
     /// The side.
     pub side: LimitSide,
     /// The bound, in the unit of the quantity.
@@ -55,35 +65,74 @@ impl LimitSide {
 
 impl LimitedQuantity {
     /// Its name in scene files and reports.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
             Self::PeakPressure => "peak-pressure",
+            Self::LoadedArea { .. } => "loaded-area",
+            Self::Field(measure) => measure.name(),
             Self::RelativeVolume => "relative-volume",
             Self::Volume => "volume",
         }
     }
 
     /// Its unit; empty for ratios.
-    pub fn unit(self) -> &'static str {
+    pub fn unit(&self) -> &'static str {
         match self {
             Self::PeakPressure => "MPa",
+            Self::LoadedArea { .. } => "mm^{2}",
+            Self::Field(measure) => measure.unit(),
             Self::RelativeVolume => "",
             Self::Volume => "mm^{3}",
         }
     }
 
-    /// Whether the shape alone decides it, without the contact state.
-    pub fn is_of_shape(self) -> bool {
+    /// Whether the shape alone decides it, without a contact state.
+    pub fn is_of_shape(&self) -> bool {
         matches!(self, Self::RelativeVolume | Self::Volume)
+    }
+
+    /// Whether it is continuously differentiable where no contact node changes its status.
+    pub fn is_smooth(&self) -> bool {
+        match self {
+            Self::PeakPressure | Self::LoadedArea { .. } => false,
+            Self::Field(measure) => measure.is_smooth(),
+            Self::RelativeVolume | Self::Volume => true,
+        }
     }
 }
 
 impl Limit {
-    /// Limits in the order of the constraints of the optimizer: those of the contact state, then those of the shape.
-    pub fn in_order(limits: &[Self]) -> Vec<Self> {
-        let mut limits = limits.to_vec();
-        limits.sort_by_key(|limit| limit.quantity.is_of_shape());
-        limits
+    /// A limit in all load cases.
+    pub fn new(quantity: LimitedQuantity, side: LimitSide, bound: f64) -> Self {
+        Self { quantity, case: None, side, bound }
+    }
+
+    /// Limits with the numbers of their cases in the order of the constraints of the optimizer: peak pressures by case,
+    /// then the others. A limit of no case becomes one per case; a limit of the shape stays one.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a limit of an unknown case.
+    pub(crate) fn of_cases(limits: &[Self], names: &[&str]) -> Result<Vec<(Self, usize)>, SceneError> {
+        let mut found = Vec::new();
+        for limit in limits {
+            let case = limit.case.as_ref().map(|case| find("limit.case", case, names.iter().copied())).transpose()?;
+            let several = names.len() > 1 && !limit.quantity.is_of_shape();
+            let cases = match case {
+                Some(case) => case..case + 1,
+                None if several => 0..names.len(),
+                None => 0..1,
+            };
+            let of = |case: usize| several.then(|| names[case].to_owned());
+            found.extend(cases.map(|case| (Self { case: of(case), ..limit.clone() }, case)));
+        }
+        let is_peak = |limit: &Self| limit.quantity == LimitedQuantity::PeakPressure;
+        found.sort_by_key(|(limit, case)| if is_peak(limit) { (0, *case) } else { (1, 0) });
+        Ok(found)
+    }
+
+    /// Whether it holds in a case.
+    pub fn is_of(&self, case: &str) -> bool {
+        self.case.as_deref().is_none_or(|own| own == case)
     }
 
     /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-8 of the bound.
@@ -96,71 +145,43 @@ impl Limit {
         if excess > ALLOWANCE * self.bound.abs() { excess } else { 0.0 }
     }
 
-    /// What it asks of the optimizer.
-    pub fn kind(&self) -> ConstraintKind {
-        match (self.quantity, self.side) {
-            (LimitedQuantity::PeakPressure, _) => ConstraintKind::Nonsmooth,
-            (_, LimitSide::Equal) => ConstraintKind::SmoothEquality,
-            (_, LimitSide::AtMost | LimitSide::AtLeast) => ConstraintKind::Smooth,
+    /// The constraint c = ±(value − bound) of the optimizer; a value within 1e-8 of the bound counts as at it where it
+    /// is a function of the shape alone, whose constraint is curved.
+    pub(crate) fn constraint(&self, value: f64) -> f64 {
+        let beyond = self.sign() * (value - self.bound);
+        let kept = self.quantity.is_of_shape() && beyond.abs() <= ALLOWANCE * self.bound.abs();
+        if kept { 0.0 } else { beyond }
+    }
+
+    /// What it asks of the optimizer. States of contact have kinks, which smooth functions of them inherit.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a quantity with kinks that must be at its bound, and for bounds that are not
+    /// finite; those of volumes must be > 0.
+    pub(crate) fn kind(&self) -> Result<ConstraintKind, SceneError> {
+        if self.quantity.is_of_shape() {
+            check_bound("limit of the volume", self.bound)?;
+        }
+        let field = || format!("limit of {}", self.quantity.name());
+        SceneError::require(self.bound.is_finite(), field(), self.bound, "a finite number")?;
+        match (self.quantity.is_of_shape(), self.side) {
+            (true, LimitSide::Equal) => Ok(ConstraintKind::SmoothEquality),
+            (true, _) => Ok(ConstraintKind::Smooth),
+            (false, LimitSide::Equal) => {
+                let allowed = "at_most or at_least alone: a function of the contact state has kinks";
+                Err(SceneError::out_of_range(field(), self.bound, allowed))
+            }
+            (false, _) => Ok(ConstraintKind::Nonsmooth),
         }
     }
 
     /// The factor of the value in the constraint c = ±(value − bound).
-    fn sign(&self) -> f64 {
+    pub(crate) fn sign(&self) -> f64 {
         if self.side == LimitSide::AtLeast { -1.0 } else { 1.0 }
     }
 }
 
-/// The volume of the lower body as constraints of the optimizer.
-#[derive(Debug, Clone)]
-pub struct VolumeLimits {
-    limits: Vec<Limit>,
-    /// That of the scene at the start, mm³.
-    start: f64,
-}
-
-impl VolumeLimits {
-    /// Those among some limits that bound the volume.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] unless bounds are finite and > 0.
-    pub fn new(limits: &[Limit], problem: &ContactProblem) -> Result<Self, SceneError> {
-        let limits: Vec<Limit> = limits.iter().filter(|limit| limit.quantity.is_of_shape()).copied().collect();
-        for limit in &limits {
-            let valid = limit.bound > 0.0 && limit.bound.is_finite();
-            SceneError::require(valid, "limit of the volume", limit.bound, "a finite number > 0")?;
-        }
-        Ok(Self { start: volume(problem, &problem.scene.shape.start()), limits })
-    }
-
-    /// The values of the limited quantities at some controls.
-    pub fn values(&self, problem: &ContactProblem, controls: &Vector) -> Vec<f64> {
-        let volume = if self.limits.is_empty() { 0.0 } else { volume(problem, controls.as_slice()) };
-        self.limits.iter().map(|limit| volume / self.unit(limit)).collect()
-    }
-
-    /// Values and gradients of the constraints, one per limit; a value within 1e-8 of the bound counts as at it.
-    pub fn constraints(&self, problem: &ContactProblem, controls: &Vector) -> Vec<(f64, Vector)> {
-        if self.limits.is_empty() {
-            return vec![];
-        }
-        let positions = problem.map.positions(controls.as_slice());
-        let slope = problem.bodies[0].mesh.volume_derivative(&positions);
-        let slope = Vector::from_vec(problem.map.pull_back(&slope));
-        let pairs = self.limits.iter().zip(self.values(problem, controls));
-        let constraint = |(limit, value): (&Limit, f64)| {
-            let beyond = limit.sign() * (value - limit.bound);
-            let kept = beyond.abs() <= ALLOWANCE * limit.bound;
-            (if kept { 0.0 } else { beyond }, &slope * (limit.sign() / self.unit(limit)))
-        };
-        pairs.map(constraint).collect()
-    }
-
-    fn unit(&self, limit: &Limit) -> f64 {
-        if limit.quantity == LimitedQuantity::RelativeVolume { self.start } else { 1.0 }
-    }
-}
-
-fn volume(problem: &ContactProblem, controls: &[f64]) -> f64 {
-    problem.bodies[0].mesh.volume(&problem.map.positions(controls))
+/// Refuses a bound that is not finite and > 0.
+pub(crate) fn check_bound(field: &str, bound: f64) -> Result<(), SceneError> {
+    SceneError::require(bound > 0.0 && bound.is_finite(), field, bound, "a finite number > 0")
 }

@@ -14,15 +14,18 @@ mod outputs;
 mod pressure;
 mod pressure_measure;
 mod region;
+mod volume;
 
 pub use field::FieldCost;
 pub use field_measure::FieldMeasure;
 pub use field_piece::{FieldGradient, FieldPiece};
-pub use limit::{Limit, LimitSide, LimitedQuantity, VolumeLimits};
+pub(crate) use limit::check_bound;
+pub use limit::{Limit, LimitSide, LimitedQuantity};
 pub use outputs::PressureOutputs;
 pub use pressure::PressureCost;
 pub use pressure_measure::{ContactAreas, NodeWeight, PressureMeasure, PressureRoot};
 pub use region::{Region, RegionCells};
+pub(crate) use volume::{volume, volume_gradient};
 
 /// The function of a contact state that is minimised.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,4 +34,6 @@ pub enum Measure {
     Pressure(PressureMeasure),
     /// A function of the displacements.
     Field(FieldMeasure),
+    /// The volume of the lower body, mm³.
+    Volume,
 }

@@ -84,6 +84,11 @@ impl PressureOutputs {
         outputs.chain(pressures.take(if self.with_pressures { forces.len() } else { 0 }))
     }
 
+    /// Their number for so many contact nodes.
+    pub fn count(&self, nodes: usize) -> usize {
+        if self.with_pressures { 2 * nodes } else { nodes }
+    }
+
     /// The outputs for normal forces (N) and areas (mm²) per contact node.
     pub fn values(&self, forces: &[f64], areas: &[f64]) -> Vec<f64> {
         self.all(forces, areas).map(|(_, output)| output.value).collect()

@@ -8,8 +8,8 @@ use crate::cost::outputs::{PressureOutputs, Scaling};
 use crate::cost::pressure_measure::{ContactAreas, NodeWeight, PressureMeasure, PressureRoot};
 use crate::equilibrium::{ContactProblem, ContactState};
 use crate::error::SceneError;
-use nonsmooth::composite::{Maximum, OuterFunction, OutputPiece, weighted_gram};
-use nonsmooth::{ConstraintKind, Matrix, Vector};
+use nonsmooth::composite::{Maximum, OuterFunction, weighted_gram};
+use nonsmooth::{Matrix, Vector};
 
 /// A measure of the contact pressures σ, a function of these outputs of
 /// [`ContactShape`](crate::contact_shape::ContactShape).
@@ -24,16 +24,11 @@ pub struct PressureCost {
     areas: Vec<f64>,
     /// Whether areas change with the shape.
     areas_change: bool,
-    /// The limit of the largest pressure, MPa, if there is one: a nonlinear constraint.
-    peak_limit: Option<f64>,
 }
 
 /// Decades of a pressure norm at the typical pressure of a scene beyond which its root is taken. Squares of
 /// subgradients at pressures far above that must still be doubles, which end at 308 decades.
 const MAX_DECADES: f64 = 100.0;
-/// Pressures over the largest one from which nodes are pieces of the limited peak: a step of the optimizer may make any
-/// of them the largest.
-const NEAR_PEAK: f64 = 0.5;
 /// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
 const TYPICAL_PEAK: f64 = 10.0;
 
@@ -78,31 +73,21 @@ impl PressureCost {
             PressureMeasure::Norm { weight: NodeWeight::Nodes, .. } => vec![1.0; areas.len()],
             _ => vec![],
         };
-        Ok(Self { measure, is_root: false, weights, areas, areas_change, peak_limit: None })
+        Ok(Self { measure, is_root: false, weights, areas, areas_change })
     }
 
-    /// The cost with the constraint max σ ≤ `limit`, MPa.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] unless the limit is finite and > 0.
-    pub fn limited(self, limit: f64) -> Result<Self, SceneError> {
-        SceneError::require(limit > 0.0 && limit.is_finite(), "limit.at_most", limit, "a finite number > 0 (MPa)")?;
-        Ok(Self { peak_limit: Some(limit), ..self })
-    }
-    /// The cost in a form that can be computed for the pressures of a problem: where a pressure norm may leave the
-    /// range of doubles, its root in MPa, which has the same minimisers. The choice depends on neither mesh nor shape.
-    #[must_use]
-    pub fn normalised_for(self, problem: &ContactProblem) -> Self {
-        let PressureMeasure::Norm { exponent, .. } = self.measure else { return self };
+    /// Whether a norm may leave the range of doubles for the pressures of a problem. Its [root](Self::rooted) in MPa
+    /// has the same minimisers. The answer depends on neither mesh nor shape.
+    pub(crate) fn may_leave_doubles(&self, problem: &ContactProblem) -> bool {
+        let PressureMeasure::Norm { exponent, .. } = self.measure else { return false };
         let typical = TYPICAL_PEAK * problem.load() / problem.contact_area();
-        match typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES {
-            true => self.rooted(),
-            false => self,
-        }
+        typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES
     }
 
-    /// A norm as its root: (Σσ^p)^{1/p}, or (∫σ^p dA / ΣA)^{1/p}.
-    fn rooted(self) -> Self {
+    /// A norm as its root: (Σσ^p)^{1/p}, or (∫σ^p dA / ΣA)^{1/p}; other measures as they are.
+    #[must_use]
+    pub(crate) fn rooted(self) -> Self {
+        let PressureMeasure::Norm { .. } = self.measure else { return self };
         let size = self.root_size();
         Self { is_root: true, weights: self.weights.iter().map(|weight| weight / size).collect(), ..self }
     }
@@ -172,8 +157,7 @@ impl PressureCost {
     pub fn contact_areas<S>(&self, state: &ContactState<S>) -> Option<ContactAreas> {
         let PressureMeasure::OpenArea { .. } = self.measure else { return None };
         let (whole, closed) = (state.rows.area(), state.rows.closed_area(&state.forces.status));
-        let outputs = self.outputs().values(&state.forces.normal, &state.rows.areas());
-        let open = self.value(&Vector::from_vec(outputs));
+        let open = self.value_of(state);
         Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
 
@@ -226,8 +210,14 @@ impl PressureCost {
 }
 
 impl PressureCost {
-    /// The outputs of a state that this cost is a function of: the pressures where areas do not change.
-    pub fn outputs(&self) -> PressureOutputs {
+    /// The value at a state.
+    pub fn value_of<S>(&self, state: &ContactState<S>) -> f64 {
+        self.value(&Vector::from_vec(self.outputs(false).values(&state.forces.normal, &state.rows.areas())))
+    }
+
+    /// The outputs of a state that this cost is a function of: the pressures where areas do not change. With
+    /// `with_pressures`, the pressures follow where the outputs are others.
+    pub fn outputs(&self, with_pressures: bool) -> PressureOutputs {
         if !self.areas_change {
             return PressureOutputs::default();
         }
@@ -239,13 +229,8 @@ impl PressureCost {
             PressureMeasure::Deviation { wanted } => Scaling::Deviation { wanted: wanted.clone() },
             PressureMeasure::OpenArea { pressure } => Scaling::OpenArea { pressure: *pressure },
         };
-        let with_pressures = self.peak_limit.is_some() && scaling != Scaling::Pressure;
+        let with_pressures = with_pressures && scaling != Scaling::Pressure;
         PressureOutputs { scaling, areas: self.areas.clone(), with_pressures }
-    }
-
-    /// The outputs that the measure is a function of; pressures of their own may follow.
-    fn of_measure(&self, outputs: &Vector) -> Vector {
-        outputs.rows(0, self.areas.len()).into_owned()
     }
 
     /// A subgradient of the measure by its outputs.
@@ -291,11 +276,11 @@ impl PressureCost {
 
 impl OuterFunction for PressureCost {
     fn value(&self, outputs: &Vector) -> f64 {
-        let pressures = self.of_measure(outputs);
+        let pressures = outputs;
         let nodes = || pressures.iter().zip(&self.areas);
         match &self.measure {
             &PressureMeasure::Norm { exponent, .. } if self.is_root => {
-                let (largest, sum) = self.relative_sum(&pressures, exponent);
+                let (largest, sum) = self.relative_sum(pressures, exponent);
                 largest * sum.powf(1.0 / exponent)
             }
             &PressureMeasure::Norm { exponent, .. } => {
@@ -308,40 +293,19 @@ impl OuterFunction for PressureCost {
             PressureMeasure::OpenArea { pressure } => {
                 nodes().map(|(found, area)| area * (1.0 - found / pressure).max(0.0)).sum()
             }
-            PressureMeasure::Peak => Maximum.value(&pressures),
+            PressureMeasure::Peak => Maximum.value(pressures),
         }
     }
 
     fn subgradient(&self, outputs: &Vector) -> Vector {
-        let mut subgradient = self.measure_subgradient(&self.of_measure(outputs));
-        subgradient.resize_vertically_mut(outputs.len(), 0.0);
-        subgradient
-    }
-
-    fn constraint_kinds(&self) -> &[ConstraintKind] {
-        if self.peak_limit.is_some() { &[ConstraintKind::Nonsmooth] } else { &[] }
-    }
-
-    /// σ_i minus the limit for the nodes near the peak, MPa.
-    fn constraint_pieces(&self, outputs: &Vector) -> Vec<OutputPiece> {
-        let Some(limit) = self.peak_limit else { return vec![] };
-        // The last outputs are the pressures, by themselves or beside those of the measure.
-        let first = outputs.len() - self.areas.len();
-        let pressures = outputs.rows_range(first..);
-        let peak = pressures.max();
-        let unit = |index: usize| Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == first + index)));
-        let near =
-            pressures.iter().enumerate().filter(|(_, pressure)| **pressure == peak || **pressure >= NEAR_PEAK * peak);
-        near.map(|(index, pressure)| OutputPiece { constraint: 0, value: pressure - limit, weights: unit(index) })
-            .collect()
+        self.measure_subgradient(outputs)
     }
 
     /// Σmσ^p has the curvature p(p−1)mσ^{p−2} per node; its root N has (p−1)/N (m(σ/N)^{p−2} − g gᵀ) with g =
     /// m(σ/N)^{p−1}, which is formed from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the
     /// open area, which have kinks, and for p < 2, where the curvature grows without bound as a node opens.
     fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
-        let pressures = &self.of_measure(outputs);
-        let jacobian = &jacobian.rows(0, pressures.len()).into_owned();
+        let pressures = outputs;
         let exponent = match self.measure {
             PressureMeasure::Norm { exponent, .. } if exponent >= 2.0 => exponent,
             PressureMeasure::Deviation { .. } => {

@@ -24,6 +24,11 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// What this solver did not need for its scene, in words.
     fn left_out(&self) -> Option<&'static str>;
 
+    /// Whether several processes share the work: all of them must make the same calls in the same order.
+    fn is_shared(&self) -> bool {
+        false
+    }
+
     /// Solves one shape to a relative residual, from nothing or from a state of a similar shape. A start of another
     /// kind of solver is not used.
     ///

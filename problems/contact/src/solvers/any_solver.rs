@@ -119,6 +119,10 @@ impl ContactSolver for AnySolver {
         self.own.left_out()
     }
 
+    fn is_shared(&self) -> bool {
+        self.shared.is_some()
+    }
+
     fn solve(
         &self,
         controls: &[f64],

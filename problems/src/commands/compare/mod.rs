@@ -58,7 +58,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         runs.push((run, shapes));
     }
     let comparison = cross(&runs).map_err(|failure| failure.after(&printed))?;
-    let facts = comparison.facts(session.processes.usage(comparison.own[0][1].state.solver)?.as_ref())?;
+    let facts = comparison.facts(session.processes.usage(comparison.own[0][1].state().solver)?.as_ref())?;
     let can_continue = runs.iter().any(|(run, _)| run.can_continue());
     let command = continued.as_ref().filter(|_| can_continue);
     let text = facts.text(true) + &command.map_or_else(String::new, |command| line("to continue", command));

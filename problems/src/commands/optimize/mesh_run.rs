@@ -34,7 +34,7 @@ impl MeshRun {
     /// As [`standstill`], for all runs of an optimization and the shape at which this one, the last, ended.
     pub fn standstill(&self, runs: &[Self], shape: &SolvedShape) -> Result<Option<Warning>, Failure> {
         let reports = runs.iter().map(|run| &run.report);
-        Ok(standstill(reports, &self.objective, &self.initial_controls, (&shape.controls, &shape.state))?)
+        Ok(standstill(reports, &self.objective, &self.initial_controls, (&shape.controls, &shape.states))?)
     }
 
     /// The constraints of the shape that the solution attains, in words.

@@ -69,7 +69,7 @@ pub fn report(
         shapes: &shapes,
         checks: &checks,
         left_out: session.arguments.left_out(last.objective.solver()),
-        processes: session.processes.usage(shapes[1].state.solver)?,
+        processes: session.processes.usage(shapes[1].state().solver)?,
     };
     let facts = ended.facts()?;
     let object = json(&facts)?;

@@ -53,8 +53,7 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
         return vec![MeshStage { part: Part::Whole, case: case.clone() }];
     }
     let stage = |&bricks: &usize| {
-        let mut case = case.clone();
-        case.scene = case.scene.with_blocks(|blocks| {
+        let case = case.clone().with_blocks(|blocks| {
             let longest = blocks.bricks.iter().copied().max().unwrap_or(1);
             let scaled = |count: usize| ((count * bricks) as f64 / longest as f64).round().max(1.0) as usize;
             blocks.bricks = blocks.bricks.map(scaled);

@@ -158,7 +158,7 @@ impl Ended<'_> {
                 ]
                 .map(|(key, value)| (key.to_owned(), value)),
             );
-            let quantity = end.limit.quantity;
+            let quantity = &end.limit.quantity;
             let unit = if quantity.unit().is_empty() {
                 "1 (in the ratio)".into()
             } else {
@@ -174,7 +174,7 @@ impl Ended<'_> {
             };
             facts.push(Fact::new(
                 "",
-                &format!("at the shape found, the limit of the {} is", quantity.name()),
+                &format!("at the shape found, {} is", end.words()),
                 words,
                 "",
             ));
@@ -270,7 +270,7 @@ impl Ended<'_> {
 
     /// Solver, warnings, and what was left out.
     fn rest(&self) -> Result<Group, Failure> {
-        let mut facts = solver_facts(&self.shapes[1].state)?;
+        let mut facts = solver_facts(self.shapes[1].state())?;
         let warnings = all_warnings(&self.last.report, self.checks);
         facts.extend(closing_facts(&warnings, &self.left_out, self.processes.as_ref())?);
         Ok(Group::new("", facts))

@@ -33,7 +33,7 @@ pub fn write(folder: &Folder, runs: &[&MeshRun]) -> Result<(), Failure> {
             };
             let entry = journal.get(record.evaluation - 1).ok_or_else(missing)?;
             let solved = SolvedShape::at(&run.objective, &Vector::from_column_slice(&entry.point))?;
-            let fields = solved.fields(&run.objective, true)?;
+            let fields = solved.fields(&run.objective, solved.worst, true)?;
             let evaluation = before + record.evaluation;
             let number = NoteValue::Integer(i32::try_from(evaluation).unwrap_or(i32::MAX));
             let notes = [objective_note(&run.objective, solved.value), Note::new("evaluation", "", number)];

@@ -81,8 +81,12 @@ impl<'a> ReportFolder<'a> {
     /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as
     /// tables, fields for ParaView, figures, and their key numbers.
     pub fn show(&mut self, solved: &[(&'static str, &'static str, &SolvedShape)]) -> Result<(), Failure> {
-        let shown = |&(name, label, shape)| ShownShape::new(self.objective, (name, label), shape, self.wanted());
-        let shapes = solved.iter().map(shown).collect::<Result<Vec<_>, _>>()?;
+        let cases = 0..self.objective.cases().count();
+        let pairs = solved.iter().flat_map(|shape| cases.clone().map(move |case| (shape, case)));
+        let shown = |(&(name, label, shape), case)| {
+            ShownShape::new(self.objective, (name, label), (shape, case), self.wanted())
+        };
+        let shapes = pairs.map(shown).collect::<Result<Vec<_>, _>>()?;
         if self.wanted().report {
             let numbers = key_numbers(self.objective, &shapes);
             self.write("key_numbers.json", &json(&numbers.table())?, "the table of the result")?;
@@ -90,7 +94,7 @@ impl<'a> ReportFolder<'a> {
         }
         for shape in &shapes {
             let what = "pressure, traction, remaining gap and status of every contact node";
-            let table = tables::contact_nodes(self.objective, shape.solved.controls.as_slice(), &shape.solved.state);
+            let table = tables::contact_nodes(self.objective, shape.solved.controls.as_slice(), shape.state());
             self.write(&format!("pressure_{}.csv", shape.name), &table, what)?;
         }
         if self.wanted().vtk {
@@ -149,7 +153,7 @@ impl<'a> ReportFolder<'a> {
         let mut states = Vec::new();
         for (index, (shape, notes)) in shapes.iter().zip(&notes).enumerate() {
             let fields = shape.fields.iter();
-            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields, notes }));
+            states.extend(fields.map(|fields| FieldState { time: index as f64, name: &shape.name, fields, notes }));
         }
         let folder = self.folder.within(VTK)?;
         for (name, text) in vtk_files(&states).map_err(Failure::computation)? {

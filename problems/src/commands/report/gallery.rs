@@ -3,6 +3,7 @@
 use crate::commands::failure::Failure;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
+use contact::contact_shape::ContactState;
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use figures::{
@@ -15,29 +16,43 @@ use scene_file::OutputSection;
 /// A solved shape with its fields and its names.
 pub struct ShownShape<'a> {
     /// What it is called beside others.
-    pub label: &'static str,
+    pub label: String,
     /// The words above its picture.
     pub caption: String,
     /// The beginning of the names of its files.
-    pub name: &'static str,
+    pub name: String,
     pub solved: &'a SolvedShape,
+    /// The load case that is shown.
+    pub case: usize,
     /// Its displacements and stresses, if a picture, a file or the page shows them.
     pub fields: Option<Fields>,
 }
 
 impl<'a> ShownShape<'a> {
-    /// A solved shape with the beginning of its files' names and what it is called, and with as many fields as the
-    /// outputs show. Files for ParaView hold the sensitivity of the objective to the position of every contact node as
-    /// well, which takes an adjoint.
+    /// A solved shape in one of its load cases, with the beginning of its files' names and what it is called, and with as
+    /// many fields as the outputs show. Files for ParaView hold the sensitivity of the objective to the position of
+    /// every contact node as well, which takes an adjoint.
     pub fn new(
         objective: &ContactObjective,
-        (name, label): (&'static str, &'static str),
-        solved: &'a SolvedShape,
+        (name, label): (&str, &str),
+        (solved, case): (&'a SolvedShape, usize),
         wanted: &OutputSection,
     ) -> Result<Self, Failure> {
         let seen = wanted.pictures || wanted.vtk || wanted.report;
-        let fields = seen.then(|| solved.fields(objective, wanted.vtk)).transpose()?;
-        Ok(Self { label, caption: format!("{label}, Θ = {}", figures::number(solved.value)), name, solved, fields })
+        let fields = seen.then(|| solved.fields(objective, case, wanted.vtk)).transpose()?;
+        let caption = format!("{label}, Θ = {}", figures::number(solved.value));
+        let own = objective.cases().name(case);
+        if own.is_empty() {
+            return Ok(Self { label: label.into(), caption, name: name.into(), solved, case, fields });
+        }
+        let (label, name) = (format!("{label}, case \"{own}\""), format!("{name}_case_{}", case + 1));
+        let caption = format!("{label}, peak {} MPa", figures::number(solved.peak_of(objective, case)));
+        Ok(Self { label, caption, name, solved, case, fields })
+    }
+
+    /// The state that is shown.
+    pub fn state(&self) -> &'a ContactState {
+        &self.solved.states[self.case]
     }
 }
 
@@ -55,7 +70,7 @@ pub fn pressure(
         faces: surface.faces(),
         values: surface.spread(&values, 0.0),
     };
-    let found = shapes.iter().map(|shape| (shape.caption.clone(), objective.pressures(&shape.solved.state)));
+    let found = shapes.iter().map(|shape| (shape.caption.clone(), objective.pressures(shape.state())));
     let wanted = objective.wanted().map(|wanted| (WANTED.to_owned(), wanted.to_vec()));
     let (name, words) = match scales {
         ColourScales::Common => ("pressure", ""),
@@ -83,7 +98,7 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
     let surface = ContactSurface::new(problem);
     let spread = |values: &[f64]| surface.spread(values, 0.0);
     let pressures: Vec<Vec<f64>> =
-        shapes.iter().map(|shape| spread(&objective.pressures(&shape.solved.state))).collect();
+        shapes.iter().map(|shape| spread(&objective.pressures(shape.state()))).collect();
     let wanted = objective.wanted().map(spread);
     let peaks: Vec<usize> = pressures.iter().map(|values| surface.peak(values)).collect();
     let [first, second] = surface.axis_symbols();
@@ -96,13 +111,13 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
             if peaks[..index].iter().any(same) {
                 continue;
             }
-            let labels = shapes.iter().zip(&peaks).filter(|(_, node)| same(node)).map(|(shape, _)| shape.label);
+            let labels = shapes.iter().zip(&peaks).filter(|(_, node)| same(node)).map(|(shape, _)| shape.label.as_str());
             let labels = labels.collect::<Vec<_>>().join(", ");
             let curve = |(name, values): (&str, &[f64])| Curve {
                 name: name.to_owned(),
                 points: surface.cut(axis, peak, values),
             };
-            let found = shapes.iter().zip(&pressures).map(|(shape, values)| (shape.label, values.as_slice()));
+            let found = shapes.iter().zip(&pressures).map(|(shape, values)| (shape.label.as_str(), values.as_slice()));
             let wanted = wanted.as_deref().map(|wanted| (WANTED, wanted));
             panels.push(LinePanel {
                 caption: format!("{other} = {} mm, through the peak ({labels})", number(level)),
@@ -135,7 +150,7 @@ pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result
         ContactStatus::Stick | ContactStatus::Slip => 1,
     };
     let panel = |shape: &ShownShape<'_>| {
-        let (forces, rows) = (&shape.solved.state.forces, &shape.solved.state.rows);
+        let (forces, rows) = (&shape.state().forces, &shape.state().rows);
         let pairs = forces.tangential.iter().zip(&rows.nodes);
         let tractions: Vec<[f64; 2]> =
             pairs.map(|(force, node)| surface.in_plan(force.map(|force| force / node.area))).collect();
@@ -172,7 +187,7 @@ pub fn convergence(
         value: record.value,
         best: record.center_value,
     });
-    let bound = objective.lower_bound(optimum.state.forces.total_normal_force());
+    let bound = objective.lower_bound(&optimum.states);
     Convergence {
         name: "convergence".into(),
         title: format!("{}: course of the optimization", objective.solver().problem().scene.name),

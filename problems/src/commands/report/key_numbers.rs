@@ -20,10 +20,10 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
     facts.extend(shape_facts::objective(objective, &solved));
     facts.extend([
         row("mean_pressure", "mean pressure over the whole contact surface", "MPa", &|shape, fields| {
-            shape.solved.state.forces.total_normal_force() / area(fields)
+            shape.state().forces.total_normal_force() / area(fields)
         }),
         row("contact_area", "contact area (nodes that are closed)", "mm²", &|shape, _| {
-            shape.solved.state.rows.closed_area(&shape.solved.state.forces.status)
+            shape.state().rows.closed_area(&shape.state().forces.status)
         }),
         row("peak_von_mises_at_centres", "peak von Mises stress at the centre of a cell", "MPa", &|_, fields| {
             largest(fields.bodies.iter().flat_map(|body| &body.von_mises))
@@ -50,12 +50,12 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
     }
     if objective.solver().problem().boundary.has_friction() {
         facts.push(row("friction_work", "friction work Σ|λ_T·slip|", "N·mm", &|shape, _| {
-            let forces = &shape.solved.state.forces;
+            let forces = &shape.state().forces;
             let pairs = forces.tangential.iter().zip(&forces.slip);
             pairs.map(|(force, slip)| force.iter().zip(slip).map(|(f, s)| f * s).sum::<f64>().abs()).sum()
         }));
     }
-    let columns = seen.iter().map(|(shape, _)| shape.label.to_owned()).collect();
+    let columns = seen.iter().map(|(shape, _)| shape.label.clone()).collect();
     Group { title: "Result", columns, facts, words: String::new() }
 }
 

@@ -100,7 +100,7 @@ fn heights(shape: &HeightShape, size: [f64; 2], heights: &[f64]) -> Section {
 
 /// Seconds of the parts of one state; empty for a solver that does not keep them.
 fn seconds(shape: &SolvedShape) -> Section {
-    let Some(stages) = shape.state.stages else { return Section::default() };
+    let Some(stages) = shape.state().stages else { return Section::default() };
     let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery } = stages;
     let stages = [
         ("equilibrium", equilibrium),

@@ -247,7 +247,7 @@ fn optimum(
 
 /// What a row keeps of a solved shape.
 fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'_>) -> Result<Solved, Failure> {
-    let (problem, forces) = (objective.solver().problem(), &shape.state.forces);
+    let (problem, forces) = (objective.solver().problem(), &shape.state().forces);
     let relief = Relief::new(problem);
     let surface = relief.surface();
     let (mean, values) = relief.of("", &problem.map.positions(shape.controls.as_slice()));
@@ -256,7 +256,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
         objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
         limit_violation: shape.limit_violation(),
-        contact_area: shape.state.rows.closed_area(&forces.status),
+        contact_area: shape.state().rows.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),
         controls: shape.controls.as_slice().to_vec(),
@@ -269,7 +269,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
             axes: surface.axis_names(),
             plan: surface.plan(),
             faces: surface.faces(),
-            pressures: surface.spread(&objective.pressures(&shape.state), 0.0),
+            pressures: surface.spread(&objective.pressures(shape.state()), 0.0),
             quantity: relief.quantity().into(),
             mean,
             relief: values,

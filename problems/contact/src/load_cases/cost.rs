@@ -1,0 +1,268 @@
+//! The objective of all cases as a function of their outputs, with the limits that are functions of the pressures.
+
+use crate::cost::{
+    FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, check_bound,
+};
+use crate::error::SceneError;
+use crate::load_cases::{Over, WeightedCase};
+use nonsmooth::composite::{OuterFunction, OutputPiece};
+use nonsmooth::{ConstraintKind, Matrix, Vector};
+use std::ops::Range;
+
+/// Pressures over the largest one from which nodes are pieces of the limited peak: a step of the optimizer may make any
+/// of them the largest.
+const NEAR_PEAK: f64 = 0.5;
+
+/// What is minimised of one case.
+#[derive(Debug, Clone)]
+pub enum CaseCost {
+    /// Of the contact pressures, normalised where it may lie outside the range of doubles.
+    Pressure(PressureCost),
+    /// A function of the displacements.
+    Field(FieldCost),
+    /// The volume of the lower body.
+    Volume,
+}
+
+/// A case among the outputs.
+#[derive(Debug, Clone)]
+struct Part {
+    weight: f64,
+    cost: CaseCost,
+    /// The outputs of the measure, and the pressures.
+    own: Range<usize>,
+    pressures: Range<usize>,
+    outputs: Option<PressureOutputs>,
+}
+
+/// A limit of the largest pressure of one case.
+#[derive(Debug, Clone, Copy)]
+struct PeakLimit {
+    part: usize,
+    side: LimitSide,
+    bound: f64,
+}
+
+/// h of the outputs of all cases: max w_k J_k or Σ w_k J_k, or the volume; with the peak pressures that are limited as
+/// its nonlinear constraints.
+#[derive(Debug, Clone)]
+pub struct CasesCost {
+    over: Over,
+    parts: Vec<Part>,
+    /// The output that is the volume, where it is the objective.
+    volume: Option<usize>,
+    limits: Vec<PeakLimit>,
+    kinds: Vec<ConstraintKind>,
+}
+
+impl CasesCost {
+    /// The cost of some cases; of the limits, it takes those of the peak pressure. A limit of no case holds for all.
+    ///
+    /// # Errors
+    /// [`SceneError`] as [`PressureCost::new`] and [`FieldCost::new`]; [`SceneError::OutOfRange`] for weights and
+    /// bounds that are not finite and > 0.
+    pub fn new(cases: &[WeightedCase<'_>], over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
+        let costs = normalised(cases)?;
+        let (mut parts, mut next, mut peaks) = (Vec::new(), 0, Vec::new());
+        for (index, (case, cost)) in cases.iter().zip(costs).enumerate() {
+            let valid = case.weight > 0.0 && case.weight.is_finite();
+            SceneError::require(valid, "case.weight", case.weight, "a finite number > 0")?;
+            let own = limits.iter().filter(|limit| limit.is_of(case.name));
+            let own = own.filter(|limit| limit.quantity == LimitedQuantity::PeakPressure);
+            let own = own.map(|&Limit { side, bound, .. }| PeakLimit { part: index, side, bound }).collect::<Vec<_>>();
+            own.iter().try_for_each(|limit| check_bound("limit of the peak pressure", limit.bound))?;
+            let nodes = case.problem.boundary.points.len();
+            let part = Part::new((case.weight, cost), next, nodes, !own.is_empty());
+            next = part.own.end.max(part.pressures.end);
+            parts.push(part);
+            peaks.extend(own);
+        }
+        let is_volume = parts.iter().any(|part| matches!(part.cost, CaseCost::Volume));
+        let kinds = vec![ConstraintKind::Nonsmooth; peaks.len()];
+        Ok(Self { over, parts, volume: is_volume.then_some(next), limits: peaks, kinds })
+    }
+
+    /// The outputs of the pressures of a case; none where neither objective nor limits depend on them.
+    pub(super) fn pressures(&self, case: usize) -> Option<PressureOutputs> {
+        self.parts[case].outputs.clone()
+    }
+
+    /// What is minimised of a case.
+    pub fn case(&self, case: usize) -> &CaseCost {
+        &self.parts[case].cost
+    }
+
+    /// Whether the volume is minimised.
+    pub fn is_volume(&self) -> bool {
+        self.volume.is_some()
+    }
+
+    /// How the cases are rated together.
+    pub fn over(&self) -> Over {
+        self.over
+    }
+
+    /// w_k J_k of every case at some outputs.
+    pub fn weighted(&self, outputs: &Vector) -> Vec<f64> {
+        self.parts.iter().map(|part| part.weight * self.value_of(part, outputs)).collect()
+    }
+
+    /// The weight w_k of a case.
+    pub fn weight(&self, case: usize) -> f64 {
+        self.parts[case].weight
+    }
+
+    /// Numbers of the outputs that are the pressures of a case; none where they are no outputs.
+    pub fn pressure_range(&self, case: usize) -> Range<usize> {
+        self.parts[case].pressures.clone()
+    }
+
+    fn value_of(&self, part: &Part, outputs: &Vector) -> f64 {
+        match (&part.cost, self.volume) {
+            (CaseCost::Pressure(cost), _) => cost.value(&slice(outputs, &part.own)),
+            (CaseCost::Field(_), _) => outputs[part.own.start],
+            (CaseCost::Volume, place) => place.map_or(f64::NAN, |place| outputs[place]),
+        }
+    }
+
+    /// The first of the worst cases.
+    pub fn worst(&self, outputs: &Vector) -> usize {
+        let values = self.weighted(outputs);
+        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        values.iter().position(|value| *value == largest).unwrap_or(0)
+    }
+}
+
+impl Part {
+    /// A case whose outputs begin at `first`.
+    fn new((weight, cost): (f64, CaseCost), first: usize, nodes: usize, is_limited: bool) -> Self {
+        let at = |count: usize| first..first + count;
+        let (own, pressures, outputs) = match &cost {
+            CaseCost::Pressure(pressure) => {
+                let outputs = pressure.outputs(is_limited);
+                let end = first + outputs.count(nodes);
+                (at(nodes), end - nodes..end, Some(outputs))
+            }
+            CaseCost::Field(_) if is_limited => {
+                (first + nodes..first + nodes + 1, at(nodes), Some(PressureOutputs::default()))
+            }
+            CaseCost::Field(_) => (at(1), at(0), None),
+            CaseCost::Volume if is_limited => (at(0), at(nodes), Some(PressureOutputs::default())),
+            CaseCost::Volume => (at(0), at(0), None),
+        };
+        Self { weight, cost, own, pressures, outputs }
+    }
+}
+
+/// The costs of all cases; norms are roots in all cases if they have to be in one.
+fn normalised(cases: &[WeightedCase<'_>]) -> Result<Vec<CaseCost>, SceneError> {
+    let cost = |case: &WeightedCase<'_>| {
+        Ok(match &case.measure {
+            Measure::Pressure(measure) => CaseCost::Pressure(PressureCost::new(measure.clone(), case.problem)?),
+            Measure::Field(measure) => CaseCost::Field(FieldCost::new(measure.clone(), case.problem)?),
+            Measure::Volume => CaseCost::Volume,
+        })
+    };
+    let costs = cases.iter().map(cost).collect::<Result<Vec<_>, SceneError>>()?;
+    let leaves = |(cost, case): (&CaseCost, &WeightedCase<'_>)| match cost {
+        CaseCost::Pressure(cost) => cost.may_leave_doubles(case.problem),
+        CaseCost::Field(_) | CaseCost::Volume => false,
+    };
+    if !costs.iter().zip(cases).any(leaves) {
+        return Ok(costs);
+    }
+    let rooted = |cost| match cost {
+        CaseCost::Pressure(cost) => CaseCost::Pressure(cost.rooted()),
+        other => other,
+    };
+    Ok(costs.into_iter().map(rooted).collect())
+}
+
+fn slice(outputs: &Vector, range: &Range<usize>) -> Vector {
+    outputs.rows(range.start, range.len()).into_owned()
+}
+
+impl OuterFunction for CasesCost {
+    fn value(&self, outputs: &Vector) -> f64 {
+        if let Some(place) = self.volume {
+            return outputs[place];
+        }
+        let values = self.weighted(outputs);
+        match self.over {
+            Over::Sum => values.iter().sum(),
+            // What is no number stays, to be refused.
+            Over::Worst => values.into_iter().fold(f64::NEG_INFINITY, |most, next| {
+                if most.is_nan() || most > next { most } else { next }
+            }),
+        }
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        let mut subgradient = Vector::zeros(outputs.len());
+        if let Some(place) = self.volume {
+            subgradient[place] = 1.0;
+            return subgradient;
+        }
+        let only = (self.over == Over::Worst).then(|| self.worst(outputs));
+        let parts = self.parts.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index));
+        for (_, part) in parts {
+            let own = match &part.cost {
+                CaseCost::Pressure(cost) => cost.subgradient(&slice(outputs, &part.own)) * part.weight,
+                CaseCost::Field(_) | CaseCost::Volume => Vector::from_element(part.own.len(), part.weight),
+            };
+            subgradient.rows_mut(part.own.start, part.own.len()).copy_from(&own);
+        }
+        subgradient
+    }
+
+    /// Σ w_k times the curvature of the measures; none for the worst of several cases, which has kinks, and where a
+    /// measure has none.
+    fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        if self.over == Over::Worst && self.parts.len() > 1 {
+            return None;
+        }
+        let mut sum = Matrix::zeros(jacobian.ncols(), jacobian.ncols());
+        for part in &self.parts {
+            let CaseCost::Pressure(cost) = &part.cost else { return None };
+            let rows = jacobian.rows(part.own.start, part.own.len()).into_owned();
+            let own = cost.curvature(&slice(outputs, &part.own), &rows)?;
+            if self.parts.len() == 1 && part.weight == 1.0 {
+                return Some(own);
+            }
+            sum += own * part.weight;
+        }
+        Some(sum)
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &self.kinds
+    }
+
+    /// ±(σ_i − bound) for the nodes near the peak, or at the peak alone where it must be at least the bound, MPa.
+    fn constraint_pieces(&self, outputs: &Vector) -> Vec<OutputPiece> {
+        let unit = |index: usize, sign: f64| {
+            let mut weights = Vector::zeros(outputs.len());
+            weights[index] = sign;
+            weights
+        };
+        let mut pieces = Vec::new();
+        for (constraint, limit) in self.limits.iter().enumerate() {
+            let range = self.parts[limit.part].pressures.clone();
+            let pressures = outputs.rows(range.start, range.len());
+            let peak = pressures.max();
+            if limit.side == LimitSide::AtLeast {
+                let index = range.start + pressures.imax();
+                pieces.push(OutputPiece { constraint, value: limit.bound - peak, weights: unit(index, -1.0) });
+                continue;
+            }
+            let nodes = pressures.iter().enumerate();
+            let near = nodes.filter(|(_, pressure)| **pressure == peak || **pressure >= NEAR_PEAK * peak);
+            pieces.extend(near.map(|(index, pressure)| OutputPiece {
+                constraint,
+                value: pressure - limit.bound,
+                weights: unit(range.start + index, 1.0),
+            }));
+        }
+        pieces
+    }
+}

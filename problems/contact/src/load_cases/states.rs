@@ -1,0 +1,42 @@
+//! The states of all cases at one shape.
+
+use crate::equilibrium::{ContactState, Tangents};
+use nonsmooth::Vector;
+use std::ops::Deref;
+use std::sync::OnceLock;
+
+/// The states of all cases at one shape, in the order of the cases.
+#[derive(Debug)]
+pub struct CaseStates<S> {
+    /// The controls of the shape.
+    pub control: Vector,
+    states: Vec<ContactState<S>>,
+    /// Forward derivatives with those of the displacements, where a Jacobian has been asked for and a limit needs them.
+    tangents: Vec<OnceLock<Tangents>>,
+}
+
+impl<S> CaseStates<S> {
+    pub(super) fn new(control: Vector, states: Vec<ContactState<S>>) -> Self {
+        let tangents = states.iter().map(|_| OnceLock::new()).collect();
+        Self { control, states, tangents }
+    }
+
+    /// Keeps the forward derivatives of a case.
+    pub(super) fn keep_tangents(&self, case: usize, tangents: Tangents) {
+        // Those found first are as good.
+        let _first = self.tangents[case].set(tangents);
+    }
+
+    /// The forward derivatives of a case with those of its displacements, if they are known.
+    pub(super) fn tangents(&self, case: usize) -> Option<&Tangents> {
+        self.tangents[case].get()
+    }
+}
+
+impl<S> Deref for CaseStates<S> {
+    type Target = [ContactState<S>];
+
+    fn deref(&self) -> &[ContactState<S>] {
+        &self.states
+    }
+}
