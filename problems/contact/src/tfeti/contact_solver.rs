@@ -7,7 +7,7 @@ use crate::equilibrium::{
 };
 use crate::error::ContactError;
 use crate::linear::vector::dot;
-use crate::tfeti::derivative::{self, DisplacementLoad, shape_derivative};
+use crate::tfeti::derivative::{self, DisplacementLoad, TangentRequest, shape_derivative};
 use crate::tfeti::solver::{Clock, TotalFeti};
 use crate::tfeti::state::TornState;
 use crate::tfeti::torn::whole_bodies;
@@ -101,7 +101,9 @@ impl ContactSolver for TotalFeti {
             return Ok(Tangents::at_rest(self.problem(), &state.rows, &self.problem().map.velocities(changes), of));
         };
         Stage::Adjoint.enter()?;
-        derivative::tangents(&contact, state.shape(), &state.solution.linearizations, changes, tolerance)
+        let whole = (of == TangentsOf::Displacements).then_some(&state.positions);
+        let request = TangentRequest { shape: state.shape(), whole, tolerance };
+        derivative::tangents(&contact, request, &state.solution.linearizations, changes)
     }
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {

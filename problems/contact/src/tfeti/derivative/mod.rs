@@ -22,4 +22,4 @@ pub use displacement_load::DisplacementLoad;
 pub use error_estimate::value_error;
 pub use shape_derivative::{SolvedShape, shape_derivative};
 pub(crate) use tangents::MAX_COLUMNS;
-pub use tangents::tangents;
+pub use tangents::{TangentRequest, tangents};

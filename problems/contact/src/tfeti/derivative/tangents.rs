@@ -7,22 +7,25 @@
 //! The system of a Newton step with another right side; the adjoint solves with its transpose. With G T y = δe the
 //! forces r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) + ∂B u − ∂g is one
 //! product, free of rigid parts that would cancel. Directions are in single precision, and so is all else where the
-//! tolerance allows it; otherwise the residual is computed afresh in double precision after every cycle.
+//! tolerance allows it; otherwise the residual is computed afresh in double precision after every cycle. Displacements
+//! are u′ = K⁺(r − Bᵀ T y) + R δa, from one more product.
 
+use crate::body::MOTIONS;
 use crate::equilibrium::law::{Friction, Linearization};
-use crate::equilibrium::{RowChange, Tangents};
+use crate::equilibrium::{Positions, RowChange, Tangents};
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
 use crate::linear::entry::{Entry, LANES, Row};
 use crate::linear::gcr::gcr;
 use crate::linear::real::Real;
+use crate::linear::vector::add_scaled;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
 use crate::tfeti::derivative::shape_derivative::SolvedShape;
 use crate::tfeti::derivative::shape_loads::ShapeLoads;
 use crate::tfeti::dual::{ActiveSet, Precision, TornContact};
-use crate::tfeti::torn::{RowVector, TornModel};
+use crate::tfeti::torn::{RowVector, TornModel, TornVector, parts_mut, whole_bodies};
 use std::cell::RefCell;
 
 /// Columns that advance in lockstep: the sums of a tile of the subdomain solves then fill the registers.
@@ -37,6 +40,17 @@ const SINGLE_ROUNDING: f64 = (1_u64 << 29) as f64;
 const MAX_ROUNDING_SHARE: f64 = 0.1;
 /// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 400;
+
+/// What is asked of a solved shape.
+#[derive(Debug, Clone, Copy)]
+pub struct TangentRequest<'a> {
+    /// The shape.
+    pub shape: SolvedShape<'a>,
+    /// Positions of the nodes of all bodies, where the displacements of the bodies are differentiated as well.
+    pub whole: Option<&'a Positions>,
+    /// Relative residual.
+    pub tolerance: f64,
+}
 
 /// The system of at most 8N changes of the shape, with residuals in precision D.
 struct TangentSystem<'a, D, const N: usize> {
@@ -61,26 +75,37 @@ struct TangentIterate<D, const N: usize> {
     natural: Row<f64, N>,
 }
 
-/// Tangents for changes of the controls.
+/// What unknowns do to the torn bodies.
+struct TangentResponse<D, const N: usize> {
+    /// K⁺(r − Bᵀ T y) over the torn dofs of this process, then its ghosts, mm.
+    torn: Vec<Row<D, N>>,
+    /// Its jumps, in contact rows with ∂B u − ∂g.
+    jumps: RowVector<Row<D, N>>,
+    /// The reduced residual with its rigid part.
+    reduced: Vec<Row<D, N>>,
+}
+
+/// Tangents for changes of the controls. Where there are several processes, all of them call it, and the first one
+/// alone gets displacements.
 ///
 /// # Errors
 /// [`ContactError::NotConverged`] when a column does not reach the tolerance, [`ContactError::Unheld`].
 pub fn tangents(
     contact: &TornContact<'_>,
-    shape: SolvedShape<'_>,
+    request: TangentRequest<'_>,
     linearizations: &[Linearization],
     changes: &[Vec<f64>],
-    tolerance: f64,
 ) -> Result<Tangents, ContactError> {
     let active = contact.active_set(linearizations.to_vec(), Friction::Coulomb)?;
     let (forces, openings) = (Vec::new(), Vec::new());
-    let mut tangents = Tangents { forces, openings, displacements: None, residual: 0.0, applications: 0 };
+    let displacements = request.whole.map(|_| Vec::new());
+    let mut tangents = Tangents { forces, openings, displacements, residual: 0.0, applications: 0 };
     let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
     for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
         match batch.len().div_ceil(LANES) {
-            0 | 1 => tangent_batch::<1>(contact, &active, shape, batch, tolerance, &mut tangents)?,
-            2 | 3 => tangent_batch::<3>(contact, &active, shape, batch, tolerance, &mut tangents)?,
-            _ => tangent_batch::<5>(contact, &active, shape, batch, tolerance, &mut tangents)?,
+            0 | 1 => tangent_batch::<1>(contact, &active, request, batch, &mut tangents)?,
+            2 | 3 => tangent_batch::<3>(contact, &active, request, batch, &mut tangents)?,
+            _ => tangent_batch::<5>(contact, &active, request, batch, &mut tangents)?,
         }
     }
     tangents.applications = contact.operator.applications();
@@ -91,21 +116,21 @@ pub fn tangents(
 fn tangent_batch<const N: usize>(
     contact: &TornContact<'_>,
     active: &ActiveSet<'_>,
-    shape: SolvedShape<'_>,
+    request: TangentRequest<'_>,
     changes: &[Vec<f64>],
-    tolerance: f64,
     tangents: &mut Tangents,
 ) -> Result<(), ContactError> {
+    let TangentRequest { shape, whole, tolerance } = request;
     if single_is_enough(contact, tolerance) {
         let system = TangentSystem::<f32, N>::new(contact, active, shape, changes);
         if let Some(iterate) = system.solve_once(tolerance) {
-            system.append(&iterate, tangents);
+            system.append(&iterate, whole, tangents);
             return Ok(());
         }
     }
     let system = TangentSystem::<f64, N>::new(contact, active, shape, changes);
     let iterate = system.solve_in_cycles(tolerance)?;
-    system.append(&iterate, tangents);
+    system.append(&iterate, whole, tangents);
     Ok(())
 }
 
@@ -134,18 +159,48 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
 
     /// Brings unknowns into equilibrium and computes their residual.
     fn evaluate(&self, mut unknowns: Vec<Row<D, N>>) -> TangentIterate<D, N> {
-        let (rows, operator) = (&self.active.rows, &self.contact.operator);
         self.active.enforce(&mut unknowns, &self.loads.resultants);
+        let TangentResponse { jumps, reduced: mut projected, .. } = self.respond(&unknowns);
+        let sums = self.contact.operator.model.sums();
+        let natural = norms(&sums, &projected);
+        let openings = self.release(&mut projected, &jumps);
+        TangentIterate { unknowns, residuals: norms(&sums, &projected), projected, openings, natural }
+    }
+
+    /// What unknowns do to the torn bodies.
+    fn respond(&self, unknowns: &[Row<D, N>]) -> TangentResponse<D, N> {
+        let (rows, operator) = (&self.active.rows, &self.contact.operator);
         let mut torn = vec![Row::ZERO; operator.model.interface.torn_count()];
-        let mut jumps = operator.free_jumps(&self.loads.forces, &rows.trial(&unknowns), &mut torn, self.count);
+        let mut jumps = operator.free_jumps(&self.loads.forces, &rows.trial(unknowns), &mut torn, self.count);
         for (jump, approach) in jumps.contact_mut().iter_mut().zip(&self.approaches) {
             jump.add_scaled(1.0, approach);
         }
-        let mut projected = rows.test_transposed(&jumps);
-        rows.add_compliance(&unknowns, &mut projected, -1.0);
-        let natural = norms(&operator.model.sums(), &projected);
-        let openings = self.release(&mut projected, &jumps);
-        TangentIterate { unknowns, residuals: norms(&operator.model.sums(), &projected), projected, openings, natural }
+        let mut reduced = rows.test_transposed(&jumps);
+        rows.add_compliance(unknowns, &mut reduced, -1.0);
+        TangentResponse { torn, jumps, reduced }
+    }
+
+    /// u′ = K⁺(r − Bᵀ T y) + R δa of whole bodies, per column: three entries per node of every body, lower first, mm;
+    /// the copies of a node are averaged. None but process 0 gets entries.
+    fn displacements(&self, unknowns: &[Row<D, N>], positions: &Positions) -> Vec<Vec<f64>> {
+        let (model, system) = (self.contact.operator.model, self.contact.operator.system);
+        let TangentResponse { torn, reduced, .. } = self.respond(unknowns);
+        let amplitudes = self.active.amplitudes(&reduced);
+        let own = &amplitudes[MOTIONS * model.clusters.owned().start..];
+        let of_column = |column: usize| {
+            let mut values: Vec<f64> = torn.iter().map(|row| row.get(column)).collect();
+            let own: Vec<f64> = own.iter().map(|row| row.get(column)).collect();
+            for (index, (values, part)) in
+                parts_mut(&mut values, &system.starts).into_iter().zip(&system.parts).enumerate()
+            {
+                for (mode, amplitude) in part.modes.iter().zip(system.amplitudes_of(index, &own)) {
+                    add_scaled(values, amplitude, mode);
+                }
+            }
+            let bodies = whole_bodies(model, positions, &TornVector(values)).into_iter();
+            bodies.flat_map(|body| body.displacement.into_flattened()).collect()
+        };
+        (0..self.count).map(of_column).collect()
     }
 
     /// y = 0, brought into equilibrium.
@@ -199,7 +254,12 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
     }
 
     /// Appends the tangents of an iterate.
-    fn append(&self, (iterate, residual): &(TangentIterate<D, N>, f64), tangents: &mut Tangents) {
+    fn append(
+        &self,
+        (iterate, residual): &(TangentIterate<D, N>, f64),
+        whole: Option<&Positions>,
+        tangents: &mut Tangents,
+    ) {
         tangents.residual = tangents.residual.max(*residual);
         let multipliers = self.active.rows.trial(&iterate.unknowns);
         let constraints = &self.contact.operator.model.constraints;
@@ -209,6 +269,9 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
             tangents.forces.push(rows.map(|(row, nu)| row.get(column) / nu).collect());
             let nodes = iterate.openings.iter().zip(&constraints.normalisation);
             tangents.openings.push(nodes.map(|(opening, nu)| opening.get(column) * nu).collect());
+        }
+        if let (Some(positions), Some(displacements)) = (whole, &mut tangents.displacements) {
+            displacements.extend(self.displacements(&iterate.unknowns, positions));
         }
     }
 }
