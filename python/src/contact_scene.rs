@@ -9,7 +9,6 @@ use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::contact_objective::ContactObjective;
-use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
 use contact::plausibility::Warning;
 use contact::solvers::{Processes, Wanted};
@@ -19,7 +18,7 @@ use nonsmooth::{Accuracy, OracleError, Report, StateSolver, VariableScaling, Vec
 use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 use scene_file::{AccuracyName, Case, FILES, MeasureName, MethodName, SceneFile, read_text};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -154,15 +153,19 @@ impl ContactScene {
         let solver = objective.solver();
         solver.problem().admissible.check_shape(&controls).map_err(shape)?;
         let solve = || {
-            let state = solver.solve(&controls, None, Accuracy::TIGHTEST)?;
-            let evaluation = objective.differentiate(&controls, &state)?;
-            let checked = if checks { Some((solver.warnings(&state)?, solver.fields(&state)?)) } else { None };
-            Ok((state, evaluation, checked))
+            let states = objective.cases().solve(&controls, None, Accuracy::TIGHTEST)?;
+            let evaluation = objective.differentiate(&controls, &states)?;
+            let checked = |case: usize| {
+                let shape = objective.cases().case(case);
+                Ok::<_, OracleError>((shape.warnings(&states[case])?, shape.fields(&states[case])?))
+            };
+            let checked = if checks { (0..states.len()).map(checked).collect::<Result<Vec<_>, _>>()? } else { vec![] };
+            Ok((states, evaluation, checked))
         };
         let failure = Failure::default();
         let watch = failure.clone();
         let solved = py.detach(|| watched(move || signal(&watch), solve));
-        let (state, evaluation, checked) = match (solved, failure.take()) {
+        let (states, evaluation, checked) = match (solved, failure.take()) {
             (_, Some(error)) => return Err(error),
             (solved, None) => solved.map_err(computation)?,
         };
@@ -170,17 +173,40 @@ impl ContactScene {
         result.set_item("value", evaluation.value)?;
         let gradient = convert::shaped(py, evaluation.subgradient.as_slice().to_vec(), &self.control_shape())?;
         result.set_item("gradient", gradient)?;
-        let Some((warnings, fields)) = checked else { return Ok(result) };
+        if checked.is_empty() {
+            return Ok(result);
+        }
         result.set_item("root", objective.root())?;
         result.set_item("unit", objective.unit())?;
         result.set_item("norm_in_mpa", objective.norm_in_mpa(evaluation.value))?;
-        result.set_item("warnings", in_words(&warnings))?;
         result.set_item("error_bound", evaluation.error_bound)?;
-        result.set_item("total_force", state.forces.total_normal_force())?;
-        result.set_item("residual", state.forces.residuals.largest())?;
-        result.set_item("weakly_active", convert::json(&state.forces.kink)?)?;
-        let grid = grid_of(solver.problem());
-        StateArrays { fields: &fields, forces: &state.forces, grid }.set(&result)?;
+        let (worst, weighted) = (objective.worst(&states), objective.weighted_values(&states));
+        let cases = PyDict::new(py);
+        for (case, (warnings, fields)) in checked.iter().enumerate() {
+            let (own, state) = (PyDict::new(py), &states[case]);
+            let grid = grid_of(objective.cases().case(case).problem());
+            for result in [Some(&own), Some(&result).filter(|_| case == worst)].into_iter().flatten() {
+                result.set_item("warnings", in_words(warnings))?;
+                result.set_item("total_force", state.forces.total_normal_force())?;
+                result.set_item("residual", state.forces.residuals.largest())?;
+                result.set_item("weakly_active", convert::json(&state.forces.kink)?)?;
+                StateArrays { fields, forces: &state.forces, grid }.set(result)?;
+            }
+            own.set_item("weighted_value", weighted[case])?;
+            cases.set_item(objective.cases().name(case), own)?;
+        }
+        result.set_item("cases", cases)?;
+        let limits = PyList::empty(py);
+        for (limit, value) in objective.limits().zip(objective.limited_values(&controls, &states)) {
+            let own = PyDict::new(py);
+            own.set_item("quantity", limit.quantity.name())?;
+            own.set_item("case", limit.case.clone())?;
+            own.set_item(limit.side.name(), limit.bound)?;
+            own.set_item("value", value)?;
+            own.set_item("violation", limit.excess(value))?;
+            limits.append(own)?;
+        }
+        result.set_item("limits", limits)?;
         Ok(result)
     }
 
@@ -277,9 +303,12 @@ impl ContactScene {
 /// What is implausible about the shape at which a run has ended, and why it stood still if it did.
 fn final_warnings(objective: &ContactObjective, start: &Vector, report: &Report) -> Result<Vec<Warning>, OracleError> {
     let end = &report.solution;
-    let state = objective.solver().solve(end, None, Accuracy::TIGHTEST)?;
-    let mut warnings = objective.solver().warnings(&state)?;
-    warnings.extend(standstill([report], objective, start, (end, &state))?);
+    let states = objective.cases().solve(end, None, Accuracy::TIGHTEST)?;
+    let mut warnings = Vec::new();
+    for (case, state) in states.iter().enumerate() {
+        warnings.extend(objective.cases().case(case).warnings(state)?);
+    }
+    warnings.extend(standstill([report], objective, start, (end, &states))?);
     Ok(warnings)
 }
 
@@ -290,10 +319,7 @@ fn in_words(warnings: &[Warning]) -> Vec<String> {
 
 impl ContactScene {
     fn objective_for(&self, wanted: Wanted) -> Result<ContactObjective, SceneError> {
-        let case = &self.case;
-        let shape = ContactShape::by(Processes::alone().solver(case.plan(wanted))?);
-        let measure = case.measure(shape.problem())?;
-        ContactObjective::new(shape, measure, &case.limits)
+        self.case.prepared(wanted, &Processes::alone())
     }
 
     /// Θ for single shapes, prepared at the first call.

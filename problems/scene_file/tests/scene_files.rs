@@ -231,7 +231,7 @@ fn objectives_are_read_or_refused_with_the_field() {
     ] {
         let case = with_objective(section).expect(section);
         let is_of_displacements = section.contains("stress") || section.contains("compliance");
-        assert_eq!(case.objective.is_of_pressures(), !is_of_displacements);
+        assert_eq!(case.objective.is_of_displacements(), is_of_displacements);
         let expected = if is_of_displacements { MethodName::Bundle } else { MethodName::Composite };
         assert_eq!(case.method, expected, "{section}");
     }

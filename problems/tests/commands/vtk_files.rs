@@ -16,11 +16,11 @@ use testset::kit::vtu_file::{ReadGrid, read};
 fn fields(scene: Scene) -> Fields {
     let shape = ContactShape::new(scene.with_bricks([4, 6, 2], [2, 3, 1]), SolverKind::Newton).unwrap();
     let control = shape.start();
-    let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
     let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
     let objective = ContactObjective::new(shape, Measure::Pressure(measure), &[]).unwrap();
-    let sensitivity = objective.position_sensitivity(&control, &state).unwrap();
-    let mut fields = objective.solver().fields(&state).unwrap();
+    let states = objective.cases().solve(&control, None, Accuracy::TIGHTEST).unwrap();
+    let sensitivity = objective.position_sensitivity(&control, &states).unwrap();
+    let mut fields = objective.solver().fields(&states[0]).unwrap();
     fields.contact.set_sensitivity(&sensitivity);
     fields
 }

@@ -1,6 +1,7 @@
 //! Scenes of the published cases.
 
 use contact::contact_objective::ContactObjective;
+use contact::load_cases::CaseStates;
 use contact::contact_shape::ContactShape;
 use contact::solvers::{Processes, SolverKind, SolverPlan};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -127,8 +128,8 @@ pub fn objective(case: &Case, kind: SolverKind) -> ContactObjective {
 }
 
 /// Value, gradient and state at some controls.
-pub fn solved(objective: &ContactObjective, controls: &Vector) -> (f64, Vector, contact::contact_shape::ContactState) {
-    let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST).expect("a state");
+pub fn solved(objective: &ContactObjective, controls: &Vector) -> (f64, Vector, CaseStates<AnyState>) {
+    let state = objective.cases().solve(controls, None, Accuracy::TIGHTEST).expect("a state");
     let evaluation = objective.differentiate(controls, &state).expect("a gradient");
     (evaluation.value, evaluation.subgradient, state)
 }

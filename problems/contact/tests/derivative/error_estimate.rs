@@ -37,12 +37,12 @@ fn objective(scene: &Scene, solver: Solver, measure: &Measure) -> ContactObjecti
 }
 
 fn value(objective: &ContactObjective, control: &Vector, accuracy: Accuracy) -> (f64, ValueError) {
-    let state = objective.solver().solve(control, None, accuracy).unwrap();
+    let state = objective.cases().solve(control, None, accuracy).unwrap();
     let dual = objective.cost_gradient(control, &state).state;
-    let error = objective.solver().pull_back(control, &state, &dual).unwrap().1;
+    let error = objective.solver().pull_back(control, &state[0], &dual).unwrap().1;
     // What the optimizer is told is the same bound.
     assert_eq!(objective.differentiate(control, &state).unwrap().error_bound, error.bound);
-    (objective.value(control, &state), error)
+    (objective.value(&state), error)
 }
 
 fn check(

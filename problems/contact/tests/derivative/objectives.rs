@@ -186,14 +186,14 @@ fn the_limited_peak_has_the_derivative_that_differences_have() {
         let at = controls(&shape, 3);
         let height = start_height(&shape.problem().scene);
         let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
-        let peak = Limit { quantity: LimitedQuantity::PeakPressure, side: LimitSide::AtMost, bound: limit };
+        let peak = Limit::new(LimitedQuantity::PeakPressure, LimitSide::AtMost, limit);
         let objective = LimitedPeak(ContactObjective::new(shape, Measure::Pressure(norm), &[peak]).unwrap());
         let direction = Direction::Given(seeded_direction(36, 4));
         let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
         let test = taylor_test(&objective, &at, &direction, &steps).unwrap();
         assert!(test.best_derivative_error < 1e-6, "{test}");
-        let state = objective.0.solver().solve(&at, None, Accuracy::TIGHTEST).unwrap();
-        let peak = objective.0.pressures(&state).into_iter().fold(0.0, f64::max);
+        let state = objective.0.cases().solve(&at, None, Accuracy::TIGHTEST).unwrap();
+        let peak = objective.0.pressures(&state[0]).into_iter().fold(0.0, f64::max);
         let value = objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value;
         assert!((value - (peak - limit)).abs() < 1e-9 * peak, "{value} {peak} {limit}");
     }

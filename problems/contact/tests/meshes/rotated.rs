@@ -46,15 +46,16 @@ fn solved(scene: &Scene, path: SolverKind, measure: &Measure) -> Found {
     let shape = ContactShape::new(scene.clone(), path).unwrap();
     let objective = ContactObjective::new(shape, measure.clone(), &[]).unwrap();
     let controls = seeded_direction(scene.control_count(), 5) * 0.05;
-    let state = objective.solver().solve(&controls, None, Accuracy::TIGHTEST).unwrap();
-    let evaluation = objective.differentiate(&controls, &state).unwrap();
+    let states = objective.cases().solve(&controls, None, Accuracy::TIGHTEST).unwrap();
+    let evaluation = objective.differentiate(&controls, &states).unwrap();
+    let state = &states[0];
     let rows = state.rows.nodes.iter().zip(&state.forces.normal);
     // The force on the body along the free directions: λ_N P n + λ_T.
     let mut forces: Vec<Point> = rows.map(|(row, force)| row.directions[0].map(|n| force * n)).collect();
     for (force, tangential) in forces.iter_mut().zip(&state.forces.tangential) {
         *force = plus(*force, 1.0, *tangential);
     }
-    let displacements = objective.solver().bodies(&state).unwrap().remove(0).displacement;
+    let displacements = objective.solver().bodies(state).unwrap().remove(0).displacement;
     Found { displacements, forces, value: evaluation.value, gradient: evaluation.subgradient }
 }
 

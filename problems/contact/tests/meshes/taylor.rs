@@ -32,7 +32,7 @@ struct Found {
 }
 
 fn remainders(objective: &ContactObjective, at: &Vector, direction: &Vector) -> Result<Found, String> {
-    let solve = |control: &Vector| objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
+    let solve = |control: &Vector| objective.cases().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let here = solve(at);
     let evaluation = objective.differentiate(at, &here).unwrap();
     let derivative = evaluation.subgradient.dot(direction);
@@ -40,13 +40,13 @@ fn remainders(objective: &ContactObjective, at: &Vector, direction: &Vector) -> 
     for step in STEPS {
         let control = at + direction * step;
         let there = solve(&control);
-        if there.forces.status != here.forces.status {
+        if there[0].forces.status != here[0].forces.status {
             return Err(format!("the status changes within a step of {step}"));
         }
-        remainders.push(objective.value(&control, &there) - evaluation.value - step * derivative);
+        remainders.push(objective.value(&there) - evaluation.value - step * derivative);
     }
     let size = evaluation.subgradient.norm() * direction.norm();
-    Ok(Found { remainders, derivative: derivative.abs(), size, value: evaluation.value, counts: here.forces.counts() })
+    Ok(Found { remainders, derivative: derivative.abs(), size, value: evaluation.value, counts: here[0].forces.counts() })
 }
 
 /// Slope of log|remainder| over log(step), by least squares.

@@ -60,7 +60,7 @@ fn check(objective: &ContactObjective, name: &str) {
 
 #[test]
 fn the_limit_of_the_volume_has_its_value_and_its_gradient() {
-    let limit = |quantity, side, bound| Limit { quantity, side, bound };
+    let limit = Limit::new;
     let limits = [
         limit(LimitedQuantity::RelativeVolume, LimitSide::Equal, 1.1),
         limit(LimitedQuantity::RelativeVolume, LimitSide::AtLeast, 0.9),

@@ -61,10 +61,10 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
     let objective = |variant| objective_by(variant, scene.scene(case(bricks))?, norm());
     let reference = objective(Variant::Direct)?;
     let control = perturbed(&reference);
-    let state = reference.solver().solve(&control, None, Accuracy::TIGHTEST)?;
-    let evaluation = reference.differentiate(&control, &state)?;
+    let states = reference.cases().solve(&control, None, Accuracy::TIGHTEST)?;
+    let evaluation = reference.differentiate(&control, &states)?;
     let exact =
-        Exact { pressures: reference.pressures(&state), value: evaluation.value, subgradient: evaluation.subgradient };
+        Exact { pressures: reference.pressures(&states[0]), value: evaluation.value, subgradient: evaluation.subgradient };
     let mut rows = Vec::new();
     for (name, variant) in METHODS {
         let objective = objective(variant)?;
@@ -105,14 +105,15 @@ fn row(
 ) -> Result<AlgebraRow, Failure> {
     let shape = objective.solver();
     let clock = Instant::now();
-    let state = shape.solve(control, None, Accuracy::relative(tolerance)?)?;
-    let dual = objective.cost_gradient(control, &state).state;
-    let (subgradient, error) = shape.pull_back(control, &state, &dual)?;
+    let states = objective.cases().solve(control, None, Accuracy::relative(tolerance)?)?;
+    let state = &states[0];
+    let dual = objective.cost_gradient(control, &states).state;
+    let (subgradient, error) = shape.pull_back(control, state, &dual)?;
     let seconds = clock.elapsed().as_secs_f64();
     let largest = exact.pressures.iter().copied().fold(0.0, f64::max);
-    let pressures = objective.pressures(&state);
+    let pressures = objective.pressures(state);
     let worst = pressures.iter().zip(&exact.pressures).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
-    let value = objective.value(control, &state);
+    let value = objective.value(&states);
     Ok(AlgebraRow {
         method,
         tolerance,

@@ -7,8 +7,9 @@
 
 use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
-use contact::contact_shape::ContactState;
+use contact::contact_shape::AnyState;
 use contact::equilibrium::ContactStatus;
+use contact::load_cases::CaseStates;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, NonsmoothObjective, Request, StateSolver, Vector};
 use problems::commands::{ContactObjective, Failure};
@@ -62,12 +63,12 @@ impl Line<'_> {
         &self.start + &self.direction * t
     }
 
-    fn state(&self, t: f64) -> Result<ContactState, Failure> {
-        Ok(self.objective.solver().solve(&self.at(t), None, Accuracy::TIGHTEST)?)
+    fn state(&self, t: f64) -> Result<CaseStates<AnyState>, Failure> {
+        Ok(self.objective.cases().solve(&self.at(t), None, Accuracy::TIGHTEST)?)
     }
 
     fn status(&self, t: f64) -> Result<Vec<ContactStatus>, Failure> {
-        Ok(self.state(t)?.forces.status)
+        Ok(self.state(t)?[0].forces.status.clone())
     }
 
     /// The first change of status on the line: t below and above it, and the statuses there.
@@ -98,7 +99,7 @@ impl Line<'_> {
     fn slope(&self, t: f64, sign: f64, status: &[ContactStatus], step: f64) -> Result<Option<f64>, Failure> {
         let value = |t: f64| -> Result<(f64, bool), Failure> {
             let state = self.state(t)?;
-            Ok((self.objective.value(&self.at(t), &state), state.forces.status == status))
+            Ok((self.objective.value(&state), state[0].forces.status == status))
         };
         let here = value(t)?.0;
         let mut step = step;
@@ -146,7 +147,7 @@ pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure>
             before,
             after,
             product,
-            weakly_active: state.forces.kink.weakly_active,
+            weakly_active: state[0].forces.kink.weakly_active,
             bracketed: bracketed(product, before, after),
         });
     }
