@@ -1,17 +1,18 @@
 //! The friction problem of a shape as matrices, for other solvers.
 //!
 //! ```text
-//! K u = f + Hᵀ r,   w = H u + (g, 0, 0) per contact node,
+//! K u = f + Hᵀ r,   w = H u + (g, s₁, s₂) per contact node,
 //! 0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ 𝓕 r_N,   w_T = −κ r_T with κ ≥ 0, and κ = 0 where |r_T| < 𝓕 r_N
 //! ```
 //! Node by node, r = (λ_N, λ_T) are the contact forces of method.md section 3, and H u is minus the jump, lower body
 //! less upper: w_N is the gap under load, w_T minus the slip. The bodies are not torn; directions that supports hold
-//! are eliminated.
+//! are eliminated: what supports prescribe there is part of f, g and s.
 
 use crate::body::loads::piece_loads;
-use crate::body::{NodalAxes, Piece};
+use crate::body::{Body, NodalAxes, Piece};
 use crate::equilibrium::{ContactPoint, ContactProblem, NodeRows};
 use crate::error::ContactError;
+use crate::linear::vector::add_scaled;
 
 /// Rows of H per contact node: the normal, then two tangential directions.
 pub const ROWS: usize = 3;
@@ -24,12 +25,14 @@ pub struct FrictionProblem {
     pub unknowns: Vec<[usize; 3]>,
     /// K by its lower triangle: (row, column, value in N/mm).
     pub stiffness: Vec<(usize, usize, f64)>,
-    /// The loads f, N.
+    /// The loads f less the forces of prescribed displacements, N.
     pub load: Vec<f64>,
     /// H: (row, column, value). A row is empty where supports hold its direction on all bodies.
     pub contact: Vec<(usize, usize, f64)>,
-    /// g per contact node: the gap before loading, mm.
+    /// g per contact node: the gap where only held nodes have moved, mm.
     pub gaps: Vec<f64>,
+    /// s per contact node: minus the slip where only held nodes have moved, mm.
+    pub slips: Vec<[f64; 2]>,
     /// 𝓕 per contact node.
     pub friction: Vec<f64>,
     /// Places of the contact nodes on the lower body, mm.
@@ -56,51 +59,69 @@ impl FrictionProblem {
         let positions = problem.positions(controls)?;
         let rows = problem.rows(&positions)?;
         let points = &problem.boundary.points;
+        let nodes = || points.iter().zip(&rows.nodes);
+        let along = |point: &ContactPoint, direction: &[f64; 3]| -> f64 {
+            point.prescribed_jump().iter().zip(direction).map(|(jump, d)| jump * d).sum()
+        };
+        let slip = |(point, node): (&ContactPoint, &NodeRows)| {
+            tangents(node.all_directions(&point.free)).map(|tangent| -along(point, &tangent))
+        };
         let mut this = Self {
             unknowns: Vec::new(),
             stiffness: Vec::new(),
             load: Vec::new(),
             contact: Vec::new(),
-            gaps: rows.gaps().collect(),
+            gaps: nodes().map(|(point, node)| node.gap - along(point, &node.directions[0])).collect(),
+            slips: nodes().map(slip).collect(),
             friction: points.iter().map(|point| point.friction).collect(),
             places: points.iter().map(|point| positions[0][point.node as usize]).collect(),
             areas: rows.areas(),
             normals: rows.nodes.iter().map(|node| node.normal).collect(),
-            tangents: points
-                .iter()
-                .zip(&rows.nodes)
-                .map(|(point, node)| tangents(node.all_directions(&point.free)))
-                .collect(),
+            tangents: nodes().map(|(point, node)| tangents(node.all_directions(&point.free))).collect(),
         };
         for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
             let piece = body.whole();
             let axes = NodalAxes::new(body, &piece);
-            // Numbers of the free dofs among all unknowns.
-            let mut number_of = |(dof, held): (usize, &bool)| {
-                (!held).then(|| {
-                    this.unknowns.push([number, piece.nodes[dof / 3] as usize, dof % 3]);
-                    this.unknowns.len() - 1
-                })
-            };
-            let numbers: Vec<Option<usize>> = axes.held.iter().enumerate().map(&mut number_of).collect();
-            let mut values = piece.assemble(&body.solid, positions, |material| *material);
-            let lower = &piece.pattern.lower;
-            axes.turn_matrix(lower, &mut values);
-            for column in 0..lower.dimension() {
-                let Some(second) = numbers[column] else { continue };
-                for position in lower.starts()[column]..lower.starts()[column + 1] {
-                    let first = numbers[lower.rows()[position]];
-                    this.stiffness.extend(first.map(|first| (first, second, values[position])));
-                }
-            }
-            let mut loads = piece_loads(body, &piece, positions);
-            axes.turn(&mut loads);
-            let loads = loads.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
-            this.load.extend(loads.map(|(force, _)| force));
+            let numbers = this.add_body(number, body, (&piece, &axes), positions);
             let contact = (number, &piece, &axes, numbers.as_slice());
             points.iter().zip(&rows.nodes).enumerate().for_each(|node| this.add_contact(node, contact));
         }
         Ok(this)
+    }
+
+    /// Adds stiffness and loads of a body; returns the numbers of its free dofs among all unknowns.
+    fn add_body(
+        &mut self,
+        number: usize,
+        body: &Body,
+        (piece, axes): (&Piece, &NodalAxes),
+        positions: &[[f64; 3]],
+    ) -> Vec<Option<usize>> {
+        let mut number_of = |(dof, held): (usize, &bool)| {
+            (!held).then(|| {
+                self.unknowns.push([number, piece.nodes[dof / 3] as usize, dof % 3]);
+                self.unknowns.len() - 1
+            })
+        };
+        let numbers: Vec<Option<usize>> = axes.held.iter().enumerate().map(&mut number_of).collect();
+        let mut values = piece.assemble(&body.solid, positions, |material| *material);
+        let lower = &piece.pattern.lower;
+        axes.turn_matrix(lower, &mut values);
+        for column in 0..lower.dimension() {
+            let Some(second) = numbers[column] else { continue };
+            for position in lower.starts()[column]..lower.starts()[column + 1] {
+                let first = numbers[lower.rows()[position]];
+                self.stiffness.extend(first.map(|first| (first, second, values[position])));
+            }
+        }
+        let mut loads = piece_loads(body, piece, positions);
+        axes.turn(&mut loads);
+        let mut carried = vec![0.0; loads.len()];
+        lower.multiply(&values, &axes.lift(body, piece), &mut carried);
+        add_scaled(&mut loads, -1.0, &carried);
+        let loads = loads.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
+        self.load.extend(loads.map(|(force, _)| force));
+        numbers
     }
 
     /// Adds the rows of H of a contact node on one body, given its number, its piece, and the numbers of its unknowns.

@@ -52,15 +52,25 @@ pub struct MaterialSection {
     pub formulation: Formulation,
 }
 
-/// Displacements held at zero on a face.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Displacements prescribed on a face: zero, or given values.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSection {
     /// The face: x1-min, x1-max, x2-min, x2-max, bottom or top of a block, or a physical surface of a mesh.
     pub face: String,
-    /// Displacement components that are zero there, or the one along the normal of the face at the start. On a block,
-    /// u3 only on the face opposite to the contact boundary.
+    /// Displacement components that are prescribed there, or the one along the normal of the face at the start: zero
+    /// unless a value is given. On a block, u3 only on the face opposite to the contact boundary.
     pub held: Vec<Component>,
+    /// Values of u1, u2, u3 where they are held; 0 for components that are not. Default 0. Where two supports share
+    /// nodes, they prescribe the same displacement along directions that both hold. With friction, no support may move
+    /// nodes of the contact face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub displacement: Option<[f64; 3]>,
+    /// Displacement along the outward normal where "normal" is held. Default 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
+    pub normal_displacement: Option<f64>,
 }
 
 /// A load: one of traction, pressure, force with moment, and formula on a face, or a body force.
@@ -218,24 +228,44 @@ impl MeshBodySection {
 /// The body of a scene; `name` stands in messages.
 ///
 /// # Errors
-/// [`SceneError`] for elastic constants outside their range and for loads of no kind or of two.
+/// [`SceneError`] for elastic constants outside their range, for displacements of components that are not held, and for
+/// loads of no kind or of two.
 pub(super) fn body(
     name: &str,
     material: &MaterialSection,
     supports: &[SupportSection],
     loads: &[LoadSection],
 ) -> Result<BodyScene, SceneError> {
-    let support = |section: &SupportSection| {
-        let holds = |component| section.held.contains(&component);
-        let axes = [Component::U1, Component::U2, Component::U3].map(holds);
-        let components = (axes.contains(&true) || !holds(Component::Normal)).then_some(Held::Components(axes));
-        let normal = holds(Component::Normal).then_some(Held::Normal);
-        let of = |held| Support { face: section.face.clone(), held };
-        components.into_iter().chain(normal).map(of).collect::<Vec<Support>>()
-    };
+    let supports = supports.iter().enumerate();
+    let supports = supports.map(|(index, section)| support(&format!("{name}.supports[{index}]"), section));
+    let supports = supports.collect::<Result<Vec<_>, SceneError>>()?.concat();
     let loads = loads.iter().enumerate().map(|(index, section)| load(&format!("{name}.loads[{index}]"), section));
     let loads = loads.collect::<Result<_, SceneError>>()?;
-    Ok(BodyScene::new(material.material()?, supports.iter().flat_map(support).collect(), loads))
+    Ok(BodyScene::new(material.material()?, supports, loads))
+}
+
+/// The supports of a section: one of components, one along the normal.
+fn support(field: &str, section: &SupportSection) -> Result<Vec<Support>, SceneError> {
+    const AXES: [Component; 3] = [Component::U1, Component::U2, Component::U3];
+    let SupportSection { face, held, displacement, normal_displacement } = section;
+    let holds = |component| held.contains(&component);
+    let values = displacement.unwrap_or_default();
+    let free = |axis: &usize| !holds(AXES[*axis]) && values[*axis] != 0.0;
+    if let Some(axis) = (0..3).find(free) {
+        let allowed = format!("0, or \"u{}\" among the held components", axis + 1);
+        return Err(SceneError::out_of_range(format!("{field}.displacement[{axis}]"), values[axis], allowed));
+    }
+    let normal = normal_displacement.unwrap_or_default();
+    if normal != 0.0 && !holds(Component::Normal) {
+        let allowed = "0, or \"normal\" among the held components";
+        return Err(SceneError::out_of_range(format!("{field}.normal_displacement"), normal, allowed));
+    }
+    let axes = AXES.map(holds);
+    let components: [Option<f64>; 3] = std::array::from_fn(|axis| axes[axis].then_some(values[axis]));
+    let along_axes = (axes.contains(&true) || !holds(Component::Normal)).then_some(Held::Components(components));
+    let along_normal = holds(Component::Normal).then_some(Held::Normal(normal));
+    let of = |held| Support { face: face.clone(), held };
+    Ok(along_axes.into_iter().chain(along_normal).map(of).collect())
 }
 
 /// The load of a section.

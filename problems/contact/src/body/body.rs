@@ -72,6 +72,19 @@ impl Body {
         self.held.get(&node).map_or(&[], Directions::held)
     }
 
+    /// The displacement that supports prescribe to a node, along the axes, mm: a sum of its held directions; 0 against
+    /// its ends for a tied node.
+    pub fn prescribed(&self, node: u32) -> [f64; 3] {
+        let held = self.held.get(&node).filter(|_| self.solid.ends_of(node).is_none());
+        held.map_or([0.0; 3], Directions::displacement)
+    }
+
+    /// The largest component of a displacement that supports prescribe, mm; 0 where they hold nodes at rest.
+    pub fn largest_prescribed(&self) -> f64 {
+        let components = self.held.values().flat_map(Directions::displacement);
+        components.fold(0.0, |largest: f64, component| largest.max(component.abs()))
+    }
+
     /// Orthonormal directions in which a node is free.
     pub fn free(&self, node: u32) -> Vec<[f64; 3]> {
         match self.held.get(&node) {

@@ -36,6 +36,14 @@ impl NodalAxes {
         Self { held, turned }
     }
 
+    /// The displacements that supports prescribe in these coordinates, mm; 0 at free dofs.
+    pub fn lift(&self, body: &Body, piece: &Piece) -> Vec<f64> {
+        let mut lift: Vec<f64> = piece.nodes.iter().flat_map(|&node| body.prescribed(node)).collect();
+        self.turn(&mut lift);
+        lift.iter_mut().zip(&self.held).filter(|(_, held)| !**held).for_each(|(value, _)| *value = 0.0);
+        lift
+    }
+
     /// A vector at a node in its coordinates.
     pub fn turn_at(&self, node: usize, vector: [f64; 3]) -> [f64; 3] {
         self.turned[node].map_or(vector, |rows| rows.map(|row| (0..3).map(|axis| row[axis] * vector[axis]).sum()))

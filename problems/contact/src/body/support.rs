@@ -1,47 +1,95 @@
-//! Supports: the directions in which nodes are held.
+//! Supports: the directions in which nodes are held, and the displacements along them.
 
 use crate::body::elasticity::facet::integrate;
 use crate::body::mesh::{CellFace, Mesh};
 use crate::error::SceneError;
 use crate::names::find_face;
 use crate::scene::{Held, Support};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
-/// Orthonormal directions in which a node is held; the axes among them come first, in their order.
+/// Orthonormal directions in which a node is held, the axes among them first and in their order, and the displacement
+/// that supports prescribe along them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Directions {
+    /// What supports ask for, along axes first.
+    conditions: Vec<Condition>,
     axes: [bool; 3],
     /// Those across the axes, without their parts along the held axes.
     oblique: Vec<[f64; 3]>,
     all: Vec<[f64; 3]>,
+    /// The displacement of least length that fulfils all conditions, mm.
+    displacement: [f64; 3],
+}
+
+/// A displacement that a support prescribes along a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Condition {
+    /// The axis that the direction is; 3 for the normal of a face.
+    axis: usize,
+    direction: [f64; 3],
+    /// Displacement along it, mm.
+    value: f64,
+    /// The support among those of the body.
+    support: usize,
+}
+
+/// Two supports that prescribe different displacements along one direction.
+struct Conflict {
+    supports: [usize; 2],
+    /// Displacements, mm.
+    values: [f64; 2],
 }
 
 /// Length of the new part of a direction that counts as none: others hold it already.
 const DEPENDENT: f64 = 1e-8;
 
+/// Difference of two displacements along one direction, relative to their size, that the rounding of normals explains.
+const SAME: f64 = 2.0 * DEPENDENT;
+
 impl Directions {
-    fn add_axes(&mut self, axes: [bool; 3]) {
-        (0..3).for_each(|axis| self.axes[axis] |= axes[axis]);
-        let oblique = std::mem::take(&mut self.oblique);
-        self.update();
-        oblique.into_iter().for_each(|direction| self.add(direction));
+    fn add(&mut self, condition: Condition) -> Result<(), Conflict> {
+        self.conditions.push(condition);
+        self.conditions.sort_by_key(|condition| condition.axis);
+        let known = Self { conditions: std::mem::take(&mut self.conditions), ..Self::default() };
+        *self = known.resolved()?;
+        Ok(())
     }
 
-    fn add(&mut self, direction: [f64; 3]) {
-        if let Some(rest) = beyond(&self.all, direction) {
-            self.oblique.push(rest);
+    /// Directions and displacement of the conditions.
+    fn resolved(mut self) -> Result<Self, Conflict> {
+        let mut supports = Vec::new();
+        for &Condition { axis, direction, value, support } in &self.conditions {
+            let along = dot(direction, self.displacement);
+            let Some((rest, length)) = rest_beyond(&self.all, direction) else {
+                let size = dot(self.displacement, self.displacement).sqrt().max(value.abs());
+                if (value - along).abs() > SAME * size {
+                    let share = |place: &usize| dot(direction, self.all[*place]).abs();
+                    let other = (0..self.all.len()).max_by(|a, b| share(a).total_cmp(&share(b)));
+                    let other = other.map_or(support, |place| supports[place]);
+                    return Err(Conflict { supports: [other, support], values: [along, value] });
+                }
+                continue;
+            };
+            let step = (value - along) / length;
+            (0..3).for_each(|axis| self.displacement[axis] += step * rest[axis]);
+            match axis {
+                3 => self.oblique.push(rest),
+                axis => self.axes[axis] = true,
+            }
+            self.all.push(rest);
+            supports.push(support);
         }
-        self.update();
-    }
-
-    fn update(&mut self) {
-        let axes = (0..3).filter(|&axis| self.axes[axis]).map(unit);
-        self.all = axes.chain(self.oblique.iter().copied()).collect();
+        Ok(self)
     }
 
     /// The held directions.
     pub fn held(&self) -> &[[f64; 3]] {
         &self.all
+    }
+
+    /// The prescribed displacement, along the axes, mm; a sum of held directions.
+    pub fn displacement(&self) -> [f64; 3] {
+        self.displacement
     }
 
     /// Orthonormal directions across them: the free axes, where all held directions are axes.
@@ -66,41 +114,78 @@ fn unit(axis: usize) -> [f64; 3] {
     std::array::from_fn(|other| if other == axis { 1.0 } else { 0.0 })
 }
 
-/// The part of a unit vector beyond orthonormal ones, at length one; none if there is none.
-pub(crate) fn beyond(known: &[[f64; 3]], direction: [f64; 3]) -> Option<[f64; 3]> {
-    let mut rest = direction;
-    for known in known {
-        let share: f64 = (0..3).map(|axis| known[axis] * rest[axis]).sum();
-        (0..3).for_each(|axis| rest[axis] -= share * known[axis]);
-    }
-    let length = rest.iter().map(|x| x * x).sum::<f64>().sqrt();
-    (length > DEPENDENT).then(|| rest.map(|x| x / length))
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
-/// The held directions of all nodes that supports hold.
+/// The part of a unit vector beyond orthonormal ones, at length one; none if there is none.
+pub(crate) fn beyond(known: &[[f64; 3]], direction: [f64; 3]) -> Option<[f64; 3]> {
+    rest_beyond(known, direction).map(|(rest, _)| rest)
+}
+
+/// The part of a unit vector beyond orthonormal ones, at length one, with the length that it has.
+fn rest_beyond(known: &[[f64; 3]], direction: [f64; 3]) -> Option<([f64; 3], f64)> {
+    let mut rest = direction;
+    for known in known {
+        let share = dot(*known, rest);
+        (0..3).for_each(|axis| rest[axis] -= share * known[axis]);
+    }
+    let length = dot(rest, rest).sqrt();
+    (length > DEPENDENT).then(|| (rest.map(|x| x / length), length))
+}
+
+/// The held directions of all nodes that supports hold, with the displacements along them.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] for faces that the mesh does not have, and for a support that holds nothing.
+/// [`SceneError::OutOfRange`] for faces that the mesh does not have, for displacements that are not finite, and for
+/// supports that prescribe different displacements along one direction of a node.
 pub fn held_directions(body: &str, mesh: &Mesh, supports: &[Support]) -> Result<HashMap<u32, Directions>, SceneError> {
     let mut held: HashMap<u32, Directions> = HashMap::new();
     for (index, support) in supports.iter().enumerate() {
         let field = format!("{body}.supports[{index}]");
         let faces = find_face(&format!("{field}.face"), &support.face, mesh)?;
-        match support.held {
-            Held::Components(axes) => {
-                let nodes = faces.iter().flat_map(|face| mesh.face_nodes(*face));
-                nodes.for_each(|node| held.entry(node).or_default().add_axes(axes));
-            }
-            Held::Normal => {
-                let mut normals: Vec<(u32, [f64; 3])> = nodal_normals(mesh, faces).into_iter().collect();
-                normals.sort_unstable_by_key(|(node, _)| *node);
-                for (node, normal) in normals {
-                    held.entry(node).or_default().add(normal);
-                }
-            }
+        let conflict = |node: u32, conflict: Conflict| {
+            let Conflict { supports: [first, second], values } = conflict;
+            let place = mesh.nodes()[node as usize];
+            SceneError::out_of_range(
+                format!("{body}.supports[{second}]"),
+                format!("a displacement of {} mm at the node at {place:?}", values[1]),
+                format!("the {} mm that {body}.supports[{first}] prescribes there in this direction", values[0]),
+            )
+        };
+        for (node, conditions) in conditions(&field, (index, support), mesh, faces)? {
+            let own = held.entry(node).or_default();
+            conditions.into_iter().try_for_each(|one| own.add(one)).map_err(|error| conflict(node, error))?;
         }
     }
     Ok(held)
+}
+
+/// What a support asks of the nodes of its faces, by ascending node.
+fn conditions(
+    field: &str,
+    (index, support): (usize, &Support),
+    mesh: &Mesh,
+    faces: &[CellFace],
+) -> Result<BTreeMap<u32, Vec<Condition>>, SceneError> {
+    let finite = |value: f64| {
+        let allowed = "a finite number (mm)";
+        SceneError::require(value.is_finite(), format!("{field}: displacement"), value, allowed)
+    };
+    match support.held {
+        Held::Components(values) => {
+            values.into_iter().flatten().try_for_each(finite)?;
+            let along =
+                |axis: usize| values[axis].map(|value| Condition { axis, direction: unit(axis), value, support: index });
+            let all: Vec<Condition> = (0..3).filter_map(along).collect();
+            Ok(faces.iter().flat_map(|face| mesh.face_nodes(*face)).map(|node| (node, all.clone())).collect())
+        }
+        Held::Normal(value) => {
+            finite(value)?;
+            let of = |direction| vec![Condition { axis: 3, direction, value, support: index }];
+            Ok(nodal_normals(mesh, faces).into_iter().map(|(node, normal)| (node, of(normal))).collect())
+        }
+    }
 }
 
 /// Unit normals at the nodes of some faces at the reference shape: ∫ψ (a × b) of their corners, at length one; at the

@@ -49,7 +49,7 @@ pub struct CompliantContact {
 /// Where the bodies are when the amplitudes are 0.
 #[derive(Debug, Clone)]
 pub(super) struct Placement {
-    /// d: jumps less gaps under the loads alone, per row, the rigid motions so far included.
+    /// d: jumps less gaps under loads and prescribed displacements alone, per row, the rigid motions so far included.
     constant: Vec<f64>,
     /// The amplitudes of these motions.
     offset: Vec<f64>,
@@ -61,10 +61,7 @@ impl CompliantContact {
         let boundary = &problem.boundary;
         let count = boundary.row_count;
         let mut compliance = Mat::<f64>::zeros(count, count);
-        let mut constant = vec![0.0; count];
-        for (point, gap) in boundary.points.iter().zip(rows.gaps()) {
-            constant[point.start] = -gap;
-        }
+        let mut constant = rows.prescribed_approaches(boundary);
         for ContactBody { body, rows } in &bodies {
             rows.add_compliance(&body.compliance, &mut compliance);
             rows.add_jumps(&body.free, 1.0, &mut constant);
@@ -89,7 +86,7 @@ impl CompliantContact {
         self.compliance.nrows()
     }
 
-    /// d: jumps less gaps under the loads alone, per row, dimensionless.
+    /// d: jumps less gaps under loads and prescribed displacements alone, per row, dimensionless.
     pub fn constant(&self) -> &[f64] {
         &self.placement.constant
     }
@@ -157,7 +154,7 @@ impl CompliantContact {
         (self.basis.transpose() * own).iter().copied().collect()
     }
 
-    /// Forces, N, and contact displacements of all bodies, mm, of given unknowns.
+    /// Forces, N, and contact displacements of all bodies less the prescribed ones, mm, of given unknowns.
     pub fn dimensional(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (forces, amplitudes) = unknowns.split_at(self.row_count());
         let forces: Vec<f64> = forces.iter().map(|force| force * self.load).collect();

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f̂_c = (S + σ I) x_c with (K + σ I_c) x = f
+//! prescribed u_D:     u = u_D + v,  v = 0 at held dofs,  K v = (f − K u_D) − Bᵀλ;   f and displacements below: of v
 //! ```
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly. All is
 //! computed in the coordinates of [`NodalAxes`].
@@ -25,6 +26,8 @@ pub struct CondensationPattern {
     symbolic: Arc<SymbolicFactor>,
     /// The contact nodes by their places in the piece.
     pub(super) contact: Vec<usize>,
+    /// u_D, mm: what supports prescribe at held dofs, 0 at free ones.
+    pub(super) lift: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -35,7 +38,7 @@ pub struct CondensedBody {
     /// f̂_c, the loads condensed onto the contact dofs, N.
     pub(crate) load: Vec<f64>,
     pub(super) factor: NumericFactor,
-    /// The loads over the whole body, N; 0 at held dofs.
+    /// The loads over the whole body less K u_D, N; 0 at held dofs.
     pub(super) full_load: Vec<f64>,
     pub(super) shift: f64,
 }
@@ -49,7 +52,8 @@ impl CondensationPattern {
         let piece = body.whole();
         let contact: Vec<usize> = contact.iter().filter_map(|&node| piece.local(node)).collect();
         let symbolic = piece.pattern.symbolic(&contact)?;
-        Ok(Self { axes: NodalAxes::new(body, &piece), piece, symbolic, contact })
+        let axes = NodalAxes::new(body, &piece);
+        Ok(Self { lift: axes.lift(body, &piece), axes, piece, symbolic, contact })
     }
 
     /// Condenses one shape.
@@ -59,7 +63,8 @@ impl CondensationPattern {
     pub fn condense(self: &Arc<Self>, body: &Body, positions: &[[f64; 3]]) -> Result<CondensedBody, ContactError> {
         let mut values = self.stiffness(body, positions);
         let mut full_load = piece_loads(body, &self.piece, positions);
-        self.axes.free_forces(&mut full_load);
+        self.axes.turn(&mut full_load);
+        let full_load = self.balance(&values, &self.lift, full_load);
         let shift = self.impose(&mut values);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
@@ -111,14 +116,22 @@ impl CondensationPattern {
         shift
     }
 
-    /// f − K u, N, for displacements u and forces f in the coordinates of the nodes; 0 at held dofs, which supports
+    /// f − K v, N, for displacements v and forces f in the coordinates of the nodes; 0 at held dofs, which supports
     /// carry.
-    pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], u: &[f64], mut force: Vec<f64>) -> Mat<f64> {
-        let values = self.stiffness(body, positions);
-        let mut image = vec![0.0; u.len()];
-        self.piece.pattern.lower.multiply(&values, u, &mut image);
-        add_scaled(&mut force, -1.0, &image);
-        Mat::from_fn(force.len(), 1, |dof, _| if self.axes.held[dof] { 0.0 } else { force[dof] })
+    pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], v: &[f64], force: Vec<f64>) -> Mat<f64> {
+        let rest = self.balance(&self.stiffness(body, positions), v, force);
+        Mat::from_fn(rest.len(), 1, |dof, _| rest[dof])
+    }
+
+    /// f − K v for the values of K; 0 at held dofs.
+    fn balance(&self, stiffness: &[f64], v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
+        if v.iter().any(|entry| *entry != 0.0) {
+            let mut image = vec![0.0; v.len()];
+            self.piece.pattern.lower.multiply(stiffness, v, &mut image);
+            add_scaled(&mut force, -1.0, &image);
+        }
+        force.iter_mut().zip(&self.axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
+        force
     }
 
     /// The entries of a vector over the body that belong to the contact nodes.

@@ -3,6 +3,7 @@
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::equilibrium::SolvedBody;
 use crate::error::ContactError;
+use crate::linear::vector::add_scaled;
 use std::sync::Arc;
 
 impl DirectSolver {
@@ -33,7 +34,12 @@ impl DirectState {
             let first: usize = sizes.take(number).sum();
             let body = &self.contact.bodies[number];
             let contact = &self.solution.displacement[first..first + body.body.free.len()];
-            body.extend_under(contact, &self.solution.forces, &body.body.condensed.full_load)
+            let condensed = &body.body.condensed;
+            let mut u = body.extend_under(contact, &self.solution.forces, &condensed.full_load);
+            let mut lift = condensed.pattern.lift.clone();
+            condensed.pattern.axes.turn_back(&mut lift);
+            add_scaled(&mut u, 1.0, &lift);
+            u
         })
     }
 }

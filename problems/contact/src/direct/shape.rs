@@ -12,6 +12,7 @@ use crate::direct::adjoint::CondensedAdjoint;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::equilibrium::{RowChange, RowSensitivities};
+use crate::linear::vector::add_scaled;
 use crate::shape::Velocities;
 use faer::Mat;
 
@@ -143,13 +144,16 @@ fn add_turned_forces(
 }
 
 impl DirectState {
-    /// Displacements of the contact dofs of every body.
+    /// Displacements of the contact dofs of every body, the prescribed ones included.
     fn contact_displacements(&self) -> Vec<Vec<f64>> {
         let mut rest = self.solution.displacement.as_slice();
         let of_body = |body: &crate::direct::compliant_body::ContactBody| {
             let (own, others) = rest.split_at(body.body.free.len());
             rest = others;
-            own.to_vec()
+            let pattern = &body.body.condensed.pattern;
+            let mut u = pattern.contact_part(&pattern.lift);
+            add_scaled(&mut u, 1.0, own);
+            u
         };
         self.contact.bodies.iter().map(of_body).collect()
     }

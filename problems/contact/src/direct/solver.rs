@@ -60,7 +60,7 @@ pub struct DirectState {
 pub(super) struct CondensedSolution {
     /// Forces and amplitudes, dimensionless.
     pub(super) unknowns: Vec<f64>,
-    /// Contact displacements of all bodies, mm.
+    /// Contact displacements of all bodies less the prescribed ones, mm.
     pub(super) displacement: Vec<f64>,
     pub(super) forces: Vec<f64>,
     pub(super) linearizations: Vec<Linearization>,

@@ -10,6 +10,9 @@ use crate::names::nodes_of;
 use crate::scene::ContactScene;
 use std::collections::BTreeSet;
 
+/// Part of a prescribed jump, relative to the displacements that it is the difference of, that is rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// A node of a body in the rows of a contact node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
@@ -19,6 +22,8 @@ pub struct Side {
     pub node: u32,
     /// Its weight in jumps: 1 for the contact node itself, −1 for its partner.
     pub weight: f64,
+    /// The displacement that supports prescribe to it along its held directions, mm.
+    pub prescribed: [f64; 3],
 }
 
 /// A node of the contact surface with its rows.
@@ -38,12 +43,19 @@ pub struct ContactPoint {
     pub friction: f64,
     /// Orthonormal directions in which one of its nodes is free.
     pub free: Vec<[f64; 3]>,
+    /// The part of its prescribed jump along directions in which all its nodes are held, mm: no row has it.
+    pub imposed: [f64; 3],
 }
 
 impl ContactPoint {
     /// Number of rows of this node.
     pub fn row_count(&self) -> usize {
         1 + self.tangents
+    }
+
+    /// Σ weight · prescribed displacement of its nodes, mm: the jump where nothing else moves.
+    pub fn prescribed_jump(&self) -> [f64; 3] {
+        prescribed_jump(&self.sides)
     }
 
     /// Its rows in a packed contact vector.
@@ -83,15 +95,19 @@ impl ContactBoundary {
         let nodes: BTreeSet<u32> = faces.iter().flat_map(|face| corners(lower, *face)).collect();
         let mut row_count = 0;
         let point = |node: u32| {
-            let sides = std::iter::once(Side { body: 0, node, weight: 1.0 });
-            let sides = sides.chain(partner(node).map(|node| Side { body: 1, node, weight: -1.0 }));
-            let sides: Vec<Side> = sides.collect();
+            let side = |body: usize, node: u32, weight: f64| {
+                let prescribed = bodies[body].prescribed(node);
+                Side { body, node, weight, prescribed }
+            };
+            let sides = std::iter::once(side(0, node, 1.0));
+            let sides: Vec<Side> = sides.chain(partner(node).map(|node| side(1, node, -1.0))).collect();
             let free = free_directions(bodies, &sides);
             let across = free.len().checked_sub(1)?;
             let named = friction_of.iter().rev().find(|(nodes, _)| nodes.contains(&node));
             let friction = named.map_or(scene.friction, |(_, friction)| *friction);
             let tangents = if has_friction { across } else { 0 };
-            let point = ContactPoint { node, sides, start: row_count, tangents, can_slide: across > 0, friction, free };
+            let (start, can_slide, imposed) = (row_count, across > 0, imposed(&sides, &free));
+            let point = ContactPoint { node, sides, start, tangents, can_slide, friction, free, imposed };
             row_count += point.row_count();
             Some(point)
         };
@@ -118,6 +134,22 @@ impl ContactBoundary {
     pub fn has_friction(&self) -> bool {
         self.has_friction
     }
+}
+
+fn prescribed_jump(sides: &[Side]) -> [f64; 3] {
+    std::array::from_fn(|axis| sides.iter().map(|side| side.weight * side.prescribed[axis]).sum())
+}
+
+/// The part of the prescribed jump of some nodes across the directions in which one of them is free.
+fn imposed(sides: &[Side], free: &[[f64; 3]]) -> [f64; 3] {
+    let mut jump = prescribed_jump(sides);
+    let size = |vector: [f64; 3]| vector.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+    let largest = sides.iter().map(|side| size(side.prescribed)).fold(0.0, f64::max);
+    for direction in free {
+        let share: f64 = (0..3).map(|axis| direction[axis] * jump[axis]).sum();
+        (0..3).for_each(|axis| jump[axis] -= share * direction[axis]);
+    }
+    if size(jump) > ROUNDING * largest { jump } else { [0.0; 3] }
 }
 
 /// Corners of a face of a body.

@@ -20,6 +20,8 @@ pub struct Configuration {
     pub rigid: RigidScene,
     /// Motions that nothing holds and that the load does not drive.
     pub grounded: Vec<Motion>,
+    /// Largest component of a displacement that supports prescribe, mm.
+    prescribed: f64,
 }
 
 impl Configuration {
@@ -40,7 +42,8 @@ impl Configuration {
         let mut rows = problem.rows(&positions)?;
         let rigid = problem.rigid_scene(&positions, &rows);
         let grounded = rigid.analyse(&problem.boundary)?;
-        if rigid.total_load() == 0.0 {
+        let prescribed = problem.largest_prescribed();
+        if rigid.total_load() == 0.0 && prescribed == 0.0 {
             let size = |node: u32| positions[0][node as usize].iter().fold(0.0, |size: f64, x| size.max(x.abs()));
             let nodes = problem.boundary.points.iter().zip(&rows.nodes);
             let mut rounding =
@@ -50,13 +53,13 @@ impl Configuration {
                 rows.nodes.iter_mut().for_each(|node| node.gap = node.gap.max(0.0));
             }
         }
-        Ok(Self { positions, rows: Arc::new(rows), rigid, grounded })
+        Ok(Self { positions, rows: Arc::new(rows), rigid, grounded, prescribed })
     }
 
-    /// Force that residuals are relative to, N: the loads, and what a contact stiffness (N/mm) makes of the
-    /// penetration. Zero for bodies at rest.
+    /// Force that residuals are relative to, N: the loads, and what a contact stiffness (N/mm) makes of the penetration
+    /// and of the largest displacement that supports prescribe. Zero for bodies at rest.
     pub fn load(&self, stiffness: f64) -> f64 {
         let penetration: f64 = self.rows.gaps().map(|gap| (-gap).max(0.0)).sum();
-        self.rigid.total_load() + stiffness * penetration
+        self.rigid.total_load() + stiffness * (penetration + self.prescribed)
     }
 }

@@ -6,7 +6,7 @@ use crate::body::loads::nodal_forces;
 use crate::body::mesh::{BlockFace, Mesh, block, smallest_extent};
 use crate::equilibrium::cell_shapes::CellShapes;
 use crate::equilibrium::modes::{Frame, RigidScene};
-use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactRows};
+use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows};
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
 use crate::scene::{Blocks, Geometry, Scene, UpperBody};
@@ -80,6 +80,7 @@ impl ContactProblem {
         let rows = self.rows(&self.start_positions()).map_err(refused)?;
         self.boundary.retain(|index| !rows.nodes[index].is_held());
         self.start_rows = ContactRows { nodes: rows.nodes.into_iter().filter(|node| !node.is_held()).collect() };
+        self.refuse_imposed_slip()?;
         let area: f64 = self.start_rows.areas().iter().sum();
         let extent = smallest_extent(&self.start_positions()[0]);
         let valid = self.start_rows.nodes.is_empty() || area > SMALLEST_AREA * extent * extent;
@@ -87,6 +88,17 @@ impl ContactProblem {
         SceneError::require(valid, "contact.area", "projected", allowed)?;
         let allowed = "a face with nodes that supports do not hold along their normals";
         SceneError::require(!self.boundary.points.is_empty(), "contact.face", &self.scene.contact.face, allowed)
+    }
+
+    /// Refuses supports that move a contact node with friction along the counter surface: its friction force along
+    /// held directions would be no unknown, but take its share of the friction cone.
+    fn refuse_imposed_slip(&self) -> Result<(), SceneError> {
+        let slides = |point: &&ContactPoint| point.friction > 0.0 && point.imposed != [0.0; 3];
+        let Some(point) = self.boundary.points.iter().find(slides) else { return Ok(()) };
+        let place = self.bodies[0].mesh.nodes()[point.node as usize];
+        let value = format!("{} at the contact node at {place:?}, which a support moves", point.friction);
+        let allowed = "0 there, or supports with prescribed displacements that do not reach the contact face";
+        Err(SceneError::out_of_range("contact friction", value, allowed))
     }
 
     fn all_positions(&self, lower: Vec<[f64; 3]>) -> Positions {
@@ -217,7 +229,7 @@ impl ContactProblem {
             let forces = nodal_forces(body, positions).into_iter();
             loads.extend(forces.map(|(node, force)| (number, positions[node as usize], force)));
         }
-        let row = |point: &crate::equilibrium::ContactPoint, direction: &[f64; 3]| {
+        let row = |point: &ContactPoint, direction: &[f64; 3]| {
             let side = |side: &crate::equilibrium::Side| {
                 (side.body, positions[side.body][side.node as usize], direction.map(|d| side.weight * d))
             };
@@ -238,11 +250,19 @@ impl ContactProblem {
         RigidScene { names, held, arms: arms.collect(), loads, contact, frames }
     }
 
-    /// Σ|f|, magnitudes of all nodal loads at the start, N.
+    /// The largest component of a displacement that supports prescribe, mm; 0 where they hold bodies at rest.
+    pub fn largest_prescribed(&self) -> f64 {
+        self.bodies.iter().map(Body::largest_prescribed).fold(0.0, f64::max)
+    }
+
+    /// What presses the bodies, N: Σ|f|, magnitudes of all nodal loads at the start, and E|u|√A, roughly what it takes
+    /// to press the largest prescribed displacement u into the contact area A. Zero where nothing moves the bodies.
     pub fn load(&self) -> f64 {
         let bodies = self.bodies.iter().zip(self.start_positions());
         let forces = bodies.flat_map(|(body, positions)| nodal_forces(body, &positions));
-        forces.map(|(_, [x, y, z])| (x * x + y * y + z * z).sqrt()).sum()
+        let loads: f64 = forces.map(|(_, [x, y, z])| (x * x + y * y + z * z).sqrt()).sum();
+        let modulus = self.materials().map(Material::young_modulus).fold(0.0, f64::max);
+        loads + modulus * self.largest_prescribed() * self.contact_area().sqrt()
     }
 }
 

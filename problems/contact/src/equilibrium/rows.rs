@@ -3,6 +3,7 @@
 //! ```text
 //! P: onto the free directions,  c = |P n|,  m = P n/c:    d₀ = P n,   t_k: orthonormal in the range of P across m
 //! jump of row r = Σ_sides weight d_r·u,    force of the body on the counter surface = Σ λ_r d_r
+//! gap = (distance of the shapes) − n·(I − P) v,    v: jump that supports prescribe
 //! d₀′ = P n′,   t_k′ = −(t_k·n′)/c m,   gap′,  A′
 //! ```
 //! A rotation of the tangential rows in their plane changes no force, so that its derivative is taken as zero.
@@ -24,7 +25,8 @@ pub struct NodeRows {
     pub normal: [f64; 3],
     /// Directions of its rows: P n, then the tangential ones; as many as the node has rows.
     pub directions: Vec<[f64; 3]>,
-    /// Gap before loading, mm; negative where the shapes overlap.
+    /// Gap before loading, mm; negative where the shapes overlap. A node whose nodes are all held in a direction is
+    /// where its supports put it along that direction.
     pub gap: f64,
     /// Tributary area A, mm².
     pub area: f64,
@@ -122,7 +124,12 @@ impl ContactGeometry {
                     reason,
                 })?,
             };
-            let Foot { normal, gap, gap_slope, normal_slope } = foot;
+            let Foot { normal, mut gap, mut gap_slope, normal_slope } = foot;
+            // What supports impose on all its nodes is no unknown, and no row of its own has it.
+            for (i, imposed) in point.imposed.into_iter().enumerate() {
+                gap -= imposed * normal[i];
+                (0..3).for_each(|j| gap_slope[j] -= imposed * normal_slope[i][j]);
+            }
             let directions = directions(&point.free, normal, point.row_count());
             let area = areas.get(&point.node).copied().unwrap_or(0.0);
             Ok(NodeRows { normal, directions, gap, area, gap_slope, normal_slope })
@@ -233,6 +240,17 @@ impl ContactRows {
             packed.extend(node.directions.iter().skip(1).map(along));
         }
         packed
+    }
+
+    /// Jumps less gaps of all packed rows where free directions are at rest and held ones where supports put them, mm.
+    pub fn prescribed_approaches(&self, boundary: &ContactBoundary) -> Vec<f64> {
+        let mut approaches = Vec::with_capacity(boundary.row_count);
+        for (point, node) in boundary.points.iter().zip(&self.nodes) {
+            let jump = point.prescribed_jump();
+            approaches.extend(node.directions.iter().map(|direction| dot(*direction, jump)));
+            approaches[point.start] -= node.gap;
+        }
+        approaches
     }
 
     /// Initial gaps, mm.

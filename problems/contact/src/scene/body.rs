@@ -3,16 +3,16 @@
 use crate::body::elasticity::Material;
 use serde::{Deserialize, Serialize};
 
-/// What a support holds at the nodes of its face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// What a support prescribes at the nodes of its face.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Held {
-    /// Which of u₁, u₂, u₃ are zero.
-    Components([bool; 3]),
-    /// The displacement along the normal of the face at the reference shape.
-    Normal,
+    /// The values of u₁, u₂, u₃, mm; none where a component is free.
+    Components([Option<f64>; 3]),
+    /// The displacement along the outward normal of the face at the reference shape, mm.
+    Normal(f64),
 }
 
-/// Displacements held at zero on a face of a body.
+/// Displacements prescribed on a face of a body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// Name of the face.
@@ -22,9 +22,14 @@ pub struct Support {
 }
 
 impl Support {
-    /// Some components held on a face.
+    /// Some components held at zero on a face.
     pub fn new(face: impl Into<String>, components: [bool; 3]) -> Self {
-        Self { face: face.into(), held: Held::Components(components) }
+        Self { face: face.into(), held: Held::Components(components.map(|held| held.then_some(0.0))) }
+    }
+
+    /// The displacement along the normals of a face held at zero.
+    pub fn along_normal(face: impl Into<String>) -> Self {
+        Self { face: face.into(), held: Held::Normal(0.0) }
     }
 }
 

@@ -262,7 +262,7 @@ impl Scene {
             check("supports", index, &support.face)?;
         }
         let vertical = |face: &str| ![BlockFace::Bottom, BlockFace::Top].iter().any(|other| other.name() == face);
-        let holds = |held: &Held| matches!(held, Held::Components([_, _, true]));
+        let holds = |held: &Held| matches!(held, Held::Components([_, _, Some(_)]));
         SceneError::require(
             !body.supports.iter().any(|support| holds(&support.held) && vertical(&support.face)),
             format!("{name}.supports: held"),

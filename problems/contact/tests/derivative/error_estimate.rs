@@ -20,7 +20,7 @@ const DIRICHLET: Solver = Some((PreconditionerKind::Dirichlet, DualMethod::Newto
 fn rounding(measure: &Measure) -> f64 {
     match measure {
         Measure::Pressure(_) => 1e-13,
-        Measure::Field(_) => 4e-12,
+        Measure::Field(_) | Measure::Volume => 4e-12,
     }
 }
 

@@ -6,6 +6,7 @@
 mod common;
 mod error_estimate;
 mod objectives;
+mod prescribed;
 mod reference_cases;
 mod subgradient_properties;
 mod tangents;

@@ -30,7 +30,7 @@ fn graded(place: f64) -> f64 {
 }
 
 fn along_normals(faces: &[&str]) -> Vec<Support> {
-    faces.iter().map(|face| Support { face: (*face).to_owned(), held: Held::Normal }).collect()
+    faces.iter().map(|face| Support { face: (*face).to_owned(), held: Held::Normal(0.0) }).collect()
 }
 
 /// A quarter of a block against a ball.

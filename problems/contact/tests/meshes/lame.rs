@@ -62,7 +62,7 @@ fn inflated(body: Body, kind: CellKind, cells: usize, curves: bool) -> Scene {
         Body::Ball => CounterSurface::Ball { centre: [0.0; 3], radius: OUTER, side: Side::Inside },
     };
     let mut scene = scene(mesh_of(body, kind, cells, curves), wall, 0.3);
-    let along_normal = |face: &str| Support { face: face.to_owned(), held: Held::Normal };
+    let along_normal = |face: &str| Support { face: face.to_owned(), held: Held::Normal(0.0) };
     scene.lower.supports = ["x1-min", "x1-max", "x2-min", "x2-max"].map(along_normal).to_vec();
     scene.lower.loads = vec![Load { place: Some("bottom".into()), kind: LoadKind::Pressure(PRESSURE) }];
     scene

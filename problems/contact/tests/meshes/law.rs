@@ -88,7 +88,7 @@ fn held(scene: &Scene) -> Vec<[bool; 3]> {
     for support in &scene.lower.supports {
         let Held::Components(components) = support.held else { unreachable!("supports of these tests") };
         let nodes = mesh.faces()[&support.face].iter().flat_map(|face| mesh.face_nodes(*face));
-        nodes.for_each(|node| (0..3).for_each(|axis| held[node as usize][axis] |= components[axis]));
+        nodes.for_each(|node| (0..3).for_each(|axis| held[node as usize][axis] |= components[axis].is_some()));
     }
     held
 }

@@ -25,7 +25,7 @@ fn scene_of(kind: CellKind, friction: f64, angle: Option<f64>) -> Scene {
     let mut scene = scene(mesh, CounterSurface::Ball { centre, radius: 40.0, side: Side::Outside }, friction);
     let sides = ["x1-min", "x2-min"].map(str::to_owned);
     scene.lower.supports = match angle {
-        Some(_) => sides.map(|face| Support { face, held: Held::Normal }).to_vec(),
+        Some(_) => sides.map(|face| Support { face, held: Held::Normal(0.0) }).to_vec(),
         None => vec![held(&sides[0], [true, false, false]), held(&sides[1], [false, true, false])],
     };
     scene.lower.loads = vec![pushed("bottom", turn.of([2.0, 1.0, 20.0])), pushed("x1-max", turn.of([-3.0, 1.0, 2.0]))];

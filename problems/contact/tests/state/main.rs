@@ -15,6 +15,7 @@ mod friction_too_weak;
 mod interruption;
 mod nearly_incompressible;
 mod paths_agree;
+mod prescribed;
 mod rank;
 mod scene_structure;
 mod several_processes;

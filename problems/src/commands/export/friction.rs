@@ -23,6 +23,7 @@ struct FrictionJson<'a> {
     contact: &'static str,
     load: &'a [f64],
     gaps: &'a [f64],
+    slips: &'a [[f64; 2]],
     friction: &'a [f64],
     places: &'a [[f64; 3]],
     areas: &'a [f64],
@@ -31,9 +32,9 @@ struct FrictionJson<'a> {
     unknowns: &'a [[usize; 3]],
 }
 
-const EQUATIONS: &str = "K u = f + H^T r; w = H u + (g, 0, 0) per contact node; 0 <= r_N, w_N; r_N w_N = 0; |r_T| <= mu r_N; \
+const EQUATIONS: &str = "K u = f + H^T r; w = H u + (g, s1, s2) per contact node; 0 <= r_N, w_N; r_N w_N = 0; |r_T| <= mu r_N; \
                          w_T = -k r_T with k >= 0, k = 0 where |r_T| < mu r_N";
-const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component (0 to 2: along x1, x2, x3; at nodes held along other directions, along the free ones)";
+const UNITS: &str = "K in N/mm; load f in N; gaps g, slips s of prescribed displacements and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component (0 to 2: along x1, x2, x3; at nodes held along other directions, along the free ones)";
 
 /// Refuses a mesh whose matrices would be too large.
 ///
@@ -68,6 +69,7 @@ pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Output
         contact: "contact.mtx",
         load: &matrices.load,
         gaps: &matrices.gaps,
+        slips: &matrices.slips,
         friction: &matrices.friction,
         places: &matrices.places,
         areas: &matrices.areas,

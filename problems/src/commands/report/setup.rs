@@ -219,18 +219,26 @@ impl Place<'_> {
 
     /// None for a support that holds nothing.
     fn support(&self, support: &Support) -> Option<SketchMark> {
-        let held = match support.held {
+        // Components of one value share it.
+        let mut values: Vec<(String, f64)> = Vec::new();
+        match support.held {
             Held::Components(held) => {
-                let names = held.iter().zip(["u₁", "u₂", "u₃"]).filter_map(|(held, name)| held.then_some(name));
-                names.collect::<Vec<_>>().join(" = ")
+                for (held, name) in held.iter().zip(["u₁", "u₂", "u₃"]) {
+                    match (held, values.last_mut()) {
+                        (Some(value), Some((names, last))) if value == last => *names += &format!(" = {name}"),
+                        (Some(value), _) => values.push((name.into(), *value)),
+                        (None, _) => {}
+                    }
+                }
             }
-            Held::Normal => "u along the normal".into(),
-        };
+            Held::Normal(value) => values.push(("u along the normal".into(), value)),
+        }
+        let held: Vec<String> = values.iter().map(|(names, value)| format!("{names} = {}", number(*value))).collect();
         let lines = self.spots(&support.face).into_iter();
         let line = |(x, normal): Spot| [sum(x, normal.map(|part| TRIANGLE * self.side * part)), x];
         (!held.is_empty()).then(|| SketchMark {
             sign: Sign::Support,
-            text: format!("{}: {held} = 0", self.words(&support.face)),
+            text: format!("{}: {}", self.words(&support.face), held.join(", ")),
             lines: lines.map(line).collect(),
         })
     }

@@ -70,7 +70,7 @@ fn patch_test_with_mean_dilatation() {
         scene.counter_surface = CounterSurface::Plane { height: 100.0 };
         scene.lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
         // Free to widen: supports hold only what friction would not.
-        scene.lower.supports[0].held = Held::Components([true, false, false]);
+        scene.lower.supports[0].held = Held::Components([Some(0.0), None, None]);
         let problem = Arc::new(ContactProblem::new(scene).unwrap());
         let forces = newton(&problem).solve(&[100.0; 36], None, 0.0).unwrap().forces;
         for pressure in problem.start_rows().pressures(&forces.normal) {

@@ -1,7 +1,7 @@
 //! The contact problem of one shape in the multipliers, whatever method solves it.
 //!
 //! ```text
-//! w = B u − g = d − Fλ + Gᵀa,    d = B K⁺ f − g
+//! w = B u − g = d − Fλ + Gᵀa,    d = B K⁺ f − g,    g: c_E, then the gaps less what supports prescribe
 //! residual:  (c w_E,  λ − Π(λ + c w)),     G λ = e in every iterate
 //! ```
 
@@ -52,10 +52,9 @@ impl<'a> TornContact<'a> {
     ) -> Self {
         let (boundary, constraints) = (&operator.model.problem.boundary, &operator.model.constraints);
         let mut constant = operator.gather(operator.loaded_displacement());
-        let nodes = boundary.points.iter().zip(&constraints.normalisation);
-        for ((point, nu), gap) in nodes.zip(rows.gaps()) {
-            constant.contact_mut()[point.start] -= gap / nu;
-        }
+        constant.iter_mut().zip(&constraints.prescribed).for_each(|(jump, prescribed)| *jump -= prescribed);
+        let approaches = rows.prescribed_approaches(boundary).into_iter().zip(constraints.contact_scales(boundary));
+        constant.contact_mut().iter_mut().zip(approaches).for_each(|(jump, (approach, nu))| *jump += approach / nu);
         Self { operator, space, preconditioner, boundary, constant, rows, stiffness, load, precision }
     }
 

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! gluing of m copies:  (m − 1) Helmert rows per free direction;   supports: one row per copy and held direction
+//! B_E u = c_E:         0 in rows of gluing, the prescribed displacement in rows of supports
 //! contact:             Σ_sides weight · (mean over the copies along d)/ν,  ν = √(Σ weight²/m)
 //! λ_physical = λ/ν,  jump_physical = ν·jump:   all rows of a node share ν, so the friction cone keeps its form
 //! ```
@@ -36,6 +37,8 @@ use std::ops::Range;
 pub struct Constraints {
     /// B_E, and its part of B_D: rows × torn vector.
     equality: [Csr; 2],
+    /// c_E: what supports prescribe in the rows of B_E of this process, mm.
+    pub prescribed: Vec<f64>,
     /// The contact nodes, from which the contact rows of a shape are made.
     contact: Vec<ContactNode>,
     /// The subdomain that owns every packed contact row.
@@ -132,6 +135,7 @@ impl Constraints {
             contact_counts: ranks.map(|rank| of_rank(rank).count()).collect(),
             normalisation: contact.iter().map(|node| node.normalisation).collect(),
             joined,
+            prescribed: all.equality.iter().map(|row| row.value).collect(),
             equality,
             contact,
             contact_owners,

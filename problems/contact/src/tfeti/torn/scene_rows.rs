@@ -22,6 +22,8 @@ pub struct EqualityRow {
     pub entries: SparseRow,
     /// The row of B_D.
     pub weights: SparseRow,
+    /// The entry of c_E: the displacement that a support prescribes, mm; 0 for gluing.
+    pub value: f64,
 }
 
 /// The rows of B_E that concern a process, before their dofs are numbered.
@@ -51,7 +53,7 @@ impl SceneRows {
         };
         let mut joined = vec![Vec::new(); own_clusters.len()];
         for (number, (body, copies)) in bodies.iter().zip(copies).enumerate() {
-            let mut visit = |cluster: Option<usize>, [entries, weights]: [SparseRow; 2]| {
+            let mut visit = |cluster: Option<usize>, [entries, weights]: [SparseRow; 2], value: f64| {
                 if let Some(cluster) = cluster {
                     if own_clusters.contains(&cluster) {
                         joined[cluster - own_clusters.start].push(entries);
@@ -61,7 +63,7 @@ impl SceneRows {
                 let owner = first_subdomain(&entries, numbering);
                 // Its weights may reach copies that the row itself does not.
                 if weights.iter().any(|(dof, _)| own.contains(&numbering.owner(*dof))) {
-                    equality.push(EqualityRow { owner, index: counts[owner], entries, weights });
+                    equality.push(EqualityRow { owner, index: counts[owner], entries, weights, value });
                 }
                 counts[owner] += 1;
             };
@@ -87,19 +89,21 @@ fn along(first: usize, direction: &[f64; 3], factor: f64) -> impl Iterator<Item 
     (0..3).map(move |axis| (first + axis, entries[axis])).filter(|(_, entry)| *entry != 0.0)
 }
 
-/// Visits the rows of supports and gluing of one node, with the cluster whose row of B_c they are; returns the number
-/// of gluing rows of B_E.
+/// Visits the rows of supports and gluing of one node, with the cluster whose row of B_c they are and the prescribed
+/// jump; returns the number of gluing rows of B_E.
 fn node_rows(
     body: &Body,
     node: u32,
     (all, scaled): (&Copies, bool),
     joined: Option<usize>,
-    visit: &mut impl FnMut(Option<usize>, [SparseRow; 2]),
+    visit: &mut impl FnMut(Option<usize>, [SparseRow; 2], f64),
 ) -> usize {
     let copies = all.of(node);
+    let prescribed = body.prescribed(node);
     for direction in body.held(node) {
+        let value = (0..3).map(|axis| direction[axis] * prescribed[axis]).sum();
         let row = |first: usize| along(first, direction, 1.0).collect::<SparseRow>();
-        copies.iter().for_each(|&first| visit(None, [row(first), row(first)]));
+        copies.iter().for_each(|&first| visit(None, [row(first), row(first)], value));
     }
     if copies.len() < 2 {
         return 0;
@@ -112,7 +116,7 @@ fn node_rows(
             let of = |factors: &[f64]| -> SparseRow {
                 copies.iter().zip(factors).flat_map(|(&first, &factor)| along(first, direction, factor)).collect()
             };
-            visit(joined, [of(row), of(weights)]);
+            visit(joined, [of(row), of(weights)], 0.0);
         }
     }
     if joined.is_none() { free.len() * (copies.len() - 1) } else { 0 }
