@@ -80,7 +80,9 @@ impl LimitSection {
         Ok(match self.quantity {
             QuantityName::PeakPressure => LimitedQuantity::PeakPressure,
             QuantityName::LoadedArea => match self.pressure {
-                None => return Err(SceneError::out_of_range(field("pressure"), "missing", "a finite number > 0 (MPa)")),
+                None => {
+                    return Err(SceneError::out_of_range(field("pressure"), "missing", "a finite number > 0 (MPa)"));
+                }
                 Some(pressure) => LimitedQuantity::LoadedArea { pressure },
             },
             QuantityName::Stress => LimitedQuantity::Field(FieldMeasure::PeakStress {
@@ -160,7 +162,8 @@ pub(crate) fn limits(sections: &[LimitSection], cases: &[&str]) -> Result<Vec<Li
             (Some(least), Some(most)) if least == most => {
                 let limit = limit(LimitSide::Equal, most)?;
                 if !limit.quantity.is_of_shape() {
-                    let allowed = "less than at_most: a function of the contact state has kinks, and cannot be kept at a value";
+                    let allowed =
+                        "less than at_most: a function of the contact state has kinks, and cannot be kept at a value";
                     return Err(SceneError::out_of_range(field("at_least"), least, allowed));
                 }
                 limits.push(limit);

@@ -1,8 +1,8 @@
 //! The objective of a scene file: its fields, and what they mean once a mesh is known.
 
 use crate::grid_file;
-use crate::wanted_pressure::WantedPressure;
 use crate::region::{RegionSection, region};
+use crate::wanted_pressure::WantedPressure;
 use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;

@@ -32,7 +32,11 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let result = result(objective, &shape, &evaluation)?;
     let warnings = checks(objective, &shape, arguments)?;
     let states = shape_facts::states(objective, &[&shape], ["kink.smallest_margin", "kink.weakly_active"]);
-    let diagnosis = arguments.diagnosis.diagnose.then(|| objective.cases().case(shape.worst).diagnose(shape.state())).transpose()?;
+    let diagnosis = arguments
+        .diagnosis
+        .diagnose
+        .then(|| objective.cases().case(shape.worst).diagnose(shape.state()))
+        .transpose()?;
     let mut rest = solver_facts(shape.state())?;
     rest.extend(work(shape.state(), [state_seconds, subgradient_seconds])?);
     rest.push(match diagnosis {

@@ -151,9 +151,9 @@ impl RecheckJson {
         let mut numbers =
             vec![number("aggregate norm", &self.aggregate_norm), number("aggregate error", &self.aggregate_error)];
         numbers.extend(
-            self.limits
-                .iter()
-                .filter_map(|limit| Some(number(&format!("{} beyond its limit", limit.name()), limit.excess.as_ref()?))),
+            self.limits.iter().filter_map(|limit| {
+                Some(number(&format!("{} beyond its limit", limit.name()), limit.excess.as_ref()?))
+            }),
         );
         let columns = ["recorded", "recomputed", "rounding", ""].map(str::to_owned).into();
         let rough = |name: &str, value| Fact::new("", name, Value::Rough(value), "");

@@ -37,7 +37,8 @@ pub fn objective(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<F
 
 /// Contact areas, where the open area is the objective.
 pub fn contact_areas(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<Fact> {
-    let areas = shapes.iter().map(|shape| objective.contact_areas(shape.worst, shape.state())).collect::<Option<Vec<_>>>();
+    let areas =
+        shapes.iter().map(|shape| objective.contact_areas(shape.worst, shape.state())).collect::<Option<Vec<_>>>();
     let Some(areas) = areas else { return Vec::new() };
     let row = |key, name, value: fn(&contact::cost::ContactAreas) -> f64| {
         Fact::row(key, name, areas.iter().map(|areas| value(areas).into()).collect(), "mm²")
@@ -78,7 +79,9 @@ pub fn states(objective: &ContactObjective, shapes: &[&SolvedShape], kinks: [&'s
         rough("residuals.complementarity", "residual: complementarity", |shape| {
             shape.state().forces.residuals.complementarity
         }),
-        rough("residuals.friction_cone", "residual: friction cone", |shape| shape.state().forces.residuals.friction_cone),
+        rough("residuals.friction_cone", "residual: friction cone", |shape| {
+            shape.state().forces.residuals.friction_cone
+        }),
         rough("residuals.dissipation", "residual: dissipation", |shape| shape.state().forces.residuals.dissipation),
         rough("residuals.newton", "residual: Newton", |shape| shape.state().forces.residuals.newton),
         rough(kinks[0], "margin of the nearest kink", |shape| shape.state().forces.kink.smallest_margin)

@@ -5,8 +5,6 @@
 //! conversion, validation, the memory estimate, and for small scenes the discrete problem with its admissible set.
 
 use contact::communication::InProcess;
-use contact::cost::{FieldCost, Measure, PressureCost};
-use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::memory;
 use contact::solvers::Wanted;
@@ -161,16 +159,12 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     let file = SceneFile::parse(text, "input.toml")?;
     assert_eq!(SceneFile::parse(&file.print()?, "printed").as_ref().ok(), Some(&file), "the printed file differs");
     let case = Case::new(&file, folder)?;
-    memory::check(&case.plan(Wanted::States), &InProcess)?;
+    case.plans(Wanted::States).try_for_each(|plan| memory::check(&plan, &InProcess))?;
     let bricks = case.scene.blocks().map_or([0; 3], |blocks| blocks.bricks);
     if (bricks[0] + 1) * (bricks[1] + 1) <= SMALL && bricks[2] <= 40 && case.scene.control_count() <= SMALL {
-        let problem = ContactProblem::new(case.scene.clone())?;
-        let measure = case.measure(&problem)?;
+        let (_, problems) = case.cost()?;
+        let problem = &problems[0];
         let start = case.start.unwrap_or_else(|| case.scene.shape.start());
-        match measure {
-            Measure::Pressure(measure) => drop(PressureCost::new(measure, &problem)?),
-            Measure::Field(measure) => drop(FieldCost::new(measure, &problem)?),
-        }
         problem.admissible.check(&nonsmooth::Vector::from_vec(start.clone()))?;
         // Inverted elements are refused later, with an error of the contact problem.
         let _refused_or_not = problem.positions(&start);

@@ -22,7 +22,7 @@ fn heard(solver: SolverKind) -> Vec<String> {
     let layer = StageLayer(move |stage| sink.lock().unwrap().push(stage));
     tracing::subscriber::with_default(tracing_subscriber::registry().with(layer), || {
         let start = theta.solver().start();
-        let state = theta.solver().solve(&start, None, Accuracy::TIGHTEST).unwrap();
+        let state = theta.cases().solve(&start, None, Accuracy::TIGHTEST).unwrap();
         theta.differentiate(&start, &state).unwrap();
     });
     let words = words.lock().unwrap();

@@ -1,8 +1,8 @@
 //! Scenes of the published cases.
 
 use contact::contact_objective::ContactObjective;
+use contact::contact_shape::{AnyState, ContactShape};
 use contact::load_cases::CaseStates;
-use contact::contact_shape::ContactShape;
 use contact::solvers::{Processes, SolverKind, SolverPlan};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, SceneFile};

@@ -175,8 +175,9 @@ fn conditions(
     match support.held {
         Held::Components(values) => {
             values.into_iter().flatten().try_for_each(finite)?;
-            let along =
-                |axis: usize| values[axis].map(|value| Condition { axis, direction: unit(axis), value, support: index });
+            let along = |axis: usize| {
+                values[axis].map(|value| Condition { axis, direction: unit(axis), value, support: index })
+            };
             let all: Vec<Condition> = (0..3).filter_map(along).collect();
             Ok(faces.iter().flat_map(|face| mesh.face_nodes(*face)).map(|node| (node, all.clone())).collect())
         }

@@ -1,7 +1,10 @@
 //! A limit of one case as a constraint of the optimizer, where it is no function of the outputs.
 
 use crate::contact_shape::unit_changes;
-use crate::cost::{FieldCost, FieldMeasure, FieldPiece, Limit, LimitSide, LimitedQuantity, PressureCost, PressureMeasure, volume, volume_gradient};
+use crate::cost::{
+    FieldCost, FieldMeasure, FieldPiece, Limit, LimitSide, LimitedQuantity, PressureCost, PressureMeasure, volume,
+    volume_gradient,
+};
 use crate::equilibrium::{ContactProblem, ContactSolver, ContactState};
 use crate::error::SceneError;
 use crate::load_cases::{CaseStates, LoadCases};
@@ -88,7 +91,8 @@ impl Bound {
 
     /// Whether pieces below the largest one are linearizations of the constraint: it is a maximum of them.
     fn has_pieces(&self) -> bool {
-        let least = matches!(self.limit.quantity, LimitedQuantity::Field(FieldMeasure::Displacement { least: true, .. }));
+        let least =
+            matches!(self.limit.quantity, LimitedQuantity::Field(FieldMeasure::Displacement { least: true, .. }));
         (self.limit.side == LimitSide::AtLeast) == least
     }
 

@@ -1,8 +1,6 @@
 //! The objective of all cases as a function of their outputs, with the limits that are functions of the pressures.
 
-use crate::cost::{
-    FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, check_bound,
-};
+use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, check_bound};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
 use nonsmooth::composite::{OuterFunction, OutputPiece};
@@ -191,9 +189,9 @@ impl OuterFunction for CasesCost {
         match self.over {
             Over::Sum => values.iter().sum(),
             // What is no number stays, to be refused.
-            Over::Worst => values.into_iter().fold(f64::NEG_INFINITY, |most, next| {
-                if most.is_nan() || most > next { most } else { next }
-            }),
+            Over::Worst => values
+                .into_iter()
+                .fold(f64::NEG_INFINITY, |most, next| if most.is_nan() || most > next { most } else { next }),
         }
     }
 

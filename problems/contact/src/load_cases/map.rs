@@ -110,7 +110,13 @@ impl<S: ContactSolver> LoadCases<S> {
     }
 
     /// The dual and the explicit derivative of Σ weights·outputs of a case.
-    fn case_dual(&self, index: usize, control: &Vector, states: &CaseStates<S::State>, weights: &[f64]) -> CostGradient {
+    fn case_dual(
+        &self,
+        index: usize,
+        control: &Vector,
+        states: &CaseStates<S::State>,
+        weights: &[f64],
+    ) -> CostGradient {
         let (case, state) = (&self.cases[index], &states[index]);
         let mut sum =
             CostGradient { control: Vector::zeros(control.len()), state: Vector::zeros(self.dual_count(index)) };
@@ -308,7 +314,8 @@ impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
         if self.with_volume {
             let problem = self.cases[0].shape.problem();
             let outputs = Vector::from_element(1, volume(problem, control.as_slice()));
-            let jacobian = Matrix::from_row_slice(1, control.len(), volume_gradient(problem, control.as_slice()).as_slice());
+            let jacobian =
+                Matrix::from_row_slice(1, control.len(), volume_gradient(problem, control.as_slice()).as_slice());
             parts.push(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None });
         }
         Ok(stacked(parts, control.len()))

@@ -12,7 +12,7 @@ use contact::cost::{Measure, NodeWeight, PressureMeasure};
 use contact::scene::{CounterSurface, Geometry, Load, LoadKind, Scene, Side};
 use contact::shape::ShapeScene;
 use nonsmooth::verify::seeded_direction;
-use nonsmooth::{Accuracy, StateSolver, Vector};
+use nonsmooth::{Accuracy, NonsmoothObjective, Request, StateSolver, Vector};
 use proptest::prelude::*;
 
 /// What both paths may differ by, relative to the largest force or displacement: rounding times the condition number of
@@ -167,7 +167,7 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
         prop_assert!(found.largest() < ROUNDING, "{path:?}: {found:?}");
         prop_assert!(state.forces.total_normal_force() > 0.0);
         let displacement = shape.bodies(&state).unwrap().remove(0).displacement;
-        let gradient = gradient(shape, &state, &controls);
+        let gradient = gradient(shape, &controls);
         states.push((state, displacement, gradient));
     }
     let [(torn, u, slope), (direct, v, own_slope)] = &states[..] else { unreachable!("two paths") };

@@ -46,7 +46,13 @@ fn remainders(objective: &ContactObjective, at: &Vector, direction: &Vector) -> 
         remainders.push(objective.value(&there) - evaluation.value - step * derivative);
     }
     let size = evaluation.subgradient.norm() * direction.norm();
-    Ok(Found { remainders, derivative: derivative.abs(), size, value: evaluation.value, counts: here[0].forces.counts() })
+    Ok(Found {
+        remainders,
+        derivative: derivative.abs(),
+        size,
+        value: evaluation.value,
+        counts: here[0].forces.counts(),
+    })
 }
 
 /// Slope of log|remainder| over log(step), by least squares.

@@ -172,12 +172,7 @@ impl Ended<'_> {
                 }
                 (true, false) => "not active".to_owned(),
             };
-            facts.push(Fact::new(
-                "",
-                &format!("at the shape found, {} is", end.words()),
-                words,
-                "",
-            ));
+            facts.push(Fact::new("", &format!("at the shape found, {} is", end.words()), words, ""));
             keys.push(own);
         }
         if !keys.is_empty() {

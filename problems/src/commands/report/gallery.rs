@@ -97,8 +97,7 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
     let problem = objective.solver().problem();
     let surface = ContactSurface::new(problem);
     let spread = |values: &[f64]| surface.spread(values, 0.0);
-    let pressures: Vec<Vec<f64>> =
-        shapes.iter().map(|shape| spread(&objective.pressures(shape.state()))).collect();
+    let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| spread(&objective.pressures(shape.state()))).collect();
     let wanted = objective.wanted().map(spread);
     let peaks: Vec<usize> = pressures.iter().map(|values| surface.peak(values)).collect();
     let [first, second] = surface.axis_symbols();
@@ -111,7 +110,8 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
             if peaks[..index].iter().any(same) {
                 continue;
             }
-            let labels = shapes.iter().zip(&peaks).filter(|(_, node)| same(node)).map(|(shape, _)| shape.label.as_str());
+            let labels =
+                shapes.iter().zip(&peaks).filter(|(_, node)| same(node)).map(|(shape, _)| shape.label.as_str());
             let labels = labels.collect::<Vec<_>>().join(", ");
             let curve = |(name, values): (&str, &[f64])| Curve {
                 name: name.to_owned(),

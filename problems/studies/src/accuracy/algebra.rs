@@ -63,8 +63,11 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
     let control = perturbed(&reference);
     let states = reference.cases().solve(&control, None, Accuracy::TIGHTEST)?;
     let evaluation = reference.differentiate(&control, &states)?;
-    let exact =
-        Exact { pressures: reference.pressures(&states[0]), value: evaluation.value, subgradient: evaluation.subgradient };
+    let exact = Exact {
+        pressures: reference.pressures(&states[0]),
+        value: evaluation.value,
+        subgradient: evaluation.subgradient,
+    };
     let mut rows = Vec::new();
     for (name, variant) in METHODS {
         let objective = objective(variant)?;
