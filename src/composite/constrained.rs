@@ -1,7 +1,7 @@
 //! Outputs that are constraints: an outer function of the first outputs, with the last ones as constraints.
 
 use super::epigraph::Epigraph;
-use super::outer::OuterFunction;
+use super::outer::{OuterFunction, OuterPart};
 use crate::nonlinear::OutputPiece;
 use crate::{ConstraintKind, Matrix, Vector};
 
@@ -58,6 +58,17 @@ impl<H: OuterFunction> OuterFunction for WithConstraints<H> {
     fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
         let own = self.own(outputs);
         self.outer.curvature(&self.outputs(outputs), &jacobian.rows(0, own).into_owned())
+    }
+
+    fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
+        let mut parts = self.outer.parts(&self.outputs(outputs));
+        parts.iter_mut().for_each(|part| part.gradient.resize_vertically_mut(outputs.len(), 0.0));
+        parts
+    }
+
+    fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, weights: &[f64]) -> Option<Matrix> {
+        let own = self.own(outputs);
+        self.outer.parts_curvature(&self.outputs(outputs), &jacobian.rows(0, own).into_owned(), weights)
     }
 
     /// None: the cones of h know nothing of the other outputs, so that the subproblem is solved by cuts.

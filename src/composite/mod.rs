@@ -24,6 +24,6 @@ pub use constrained::WithConstraints;
 pub use epigraph::Epigraph;
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
 pub use outer::{
-    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SumOfPowers, weighted_gram,
+    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, OuterPart, PositiveParts, SumOfPowers, weighted_gram,
 };
 pub use sum::SmoothPlus;

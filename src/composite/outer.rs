@@ -4,6 +4,15 @@ use super::epigraph::Epigraph;
 use crate::nonlinear::OutputPiece;
 use crate::{ConstraintKind, Matrix, Vector};
 
+/// One of the functions whose maximum an outer function is, at some outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OuterPart {
+    /// h_k(c).
+    pub value: f64,
+    /// ∇h_k(c), m entries.
+    pub gradient: Vector,
+}
+
 /// A convex function h: Rᵐ → R with one subgradient, and its curvature where it has one.
 pub trait OuterFunction {
     /// h(c), in units of Θ.
@@ -17,6 +26,19 @@ pub trait OuterFunction {
     /// some outputs and none for others.
     fn curvature(&self, _outputs: &Vector, _jacobian: &Matrix) -> Option<Matrix> {
         None
+    }
+
+    /// The functions h_k whose maximum h is, m entries each gradient: smooth ones where
+    /// [`parts_curvature`](Self::parts_curvature) has an answer. The default is h itself with one subgradient.
+    fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
+        vec![OuterPart { value: self.value(outputs), gradient: self.subgradient(outputs) }]
+    }
+
+    /// Σ λ_k Gᵀ∇²h_k G, n × n, for weights λ_k ≥ 0 of the [`parts`](Self::parts), if these are smooth: the subproblem is
+    /// then solved by Newton's method, with all parts at once. The default is the [`curvature`](Self::curvature) of h.
+    /// The answer must not be a matrix for some outputs and none for others.
+    fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, _weights: &[f64]) -> Option<Matrix> {
+        self.curvature(outputs, jacobian)
     }
 
     /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is
@@ -54,6 +76,14 @@ impl<H: OuterFunction + ?Sized> OuterFunction for &H {
 
     fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
         (**self).curvature(outputs, jacobian)
+    }
+
+    fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
+        (**self).parts(outputs)
+    }
+
+    fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, weights: &[f64]) -> Option<Matrix> {
+        (**self).parts_curvature(outputs, jacobian, weights)
     }
 
     fn epigraph(&self) -> Option<Epigraph> {

@@ -2,7 +2,7 @@
 
 use super::{Certificate, CompositeProof};
 use crate::checks::check_size;
-use crate::composite::OuterFunction;
+use crate::composite::{OuterFunction, OuterPart};
 use crate::{InputError, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -53,9 +53,16 @@ impl CompositeProof {
                     raise(&mut check.outer, relative((product - conjugate - own.value).abs(), size));
                 }
                 None => {
-                    let at = outer.value(&own.outputs);
-                    raise(&mut check.outer, relative((at - own.value).abs(), at.abs().max(own.value.abs())));
-                    raise(&mut check.outer, distance(&outer.subgradient(&own.outputs), &own.subgradient));
+                    let at = OuterPart { value: outer.value(&own.outputs), gradient: outer.subgradient(&own.outputs) };
+                    let off = |part: &OuterPart| {
+                        let sizes = part.value.abs().max(own.value.abs());
+                        let value = relative((part.value - own.value).abs(), sizes);
+                        value.max(distance(&part.gradient, &own.subgradient))
+                    };
+                    // A cut may be that of any of the functions whose maximum h is.
+                    let parts = outer.parts(&own.outputs);
+                    let nearest = parts.iter().chain([&at]).map(off).fold(f64::INFINITY, f64::min);
+                    raise(&mut check.outer, if off(&at).is_nan() { f64::NAN } else { nearest });
                 }
             }
             raise(&mut check.cuts, distance(&self.jacobian.tr_mul(&own.subgradient), &cut.subgradient));

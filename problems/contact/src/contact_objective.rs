@@ -266,7 +266,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
         let count = start.len();
-        let is_height = self.solver().problem().scene.heights().is_some() && !self.cost().is_volume();
+        let is_height = self.solver().problem().scene.heights().is_some();
         let stretch = if is_height { (start.mean().abs() / first_step).max(1.0) } else { 1.0 };
         Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
     }

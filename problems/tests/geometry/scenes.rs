@@ -1,8 +1,7 @@
 //! Scenes of the published cases.
 
 use contact::contact_objective::ContactObjective;
-use contact::contact_shape::{AnyState, ContactShape};
-use contact::load_cases::CaseStates;
+use contact::contact_shape::{ContactShape, ContactState};
 use contact::solvers::{Processes, SolverKind, SolverPlan};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, SceneFile};
@@ -128,10 +127,10 @@ pub fn objective(case: &Case, kind: SolverKind) -> ContactObjective {
 }
 
 /// Value, gradient and state at some controls.
-pub fn solved(objective: &ContactObjective, controls: &Vector) -> (f64, Vector, CaseStates<AnyState>) {
+pub fn solved(objective: &ContactObjective, controls: &Vector) -> (f64, Vector, ContactState) {
     let state = objective.cases().solve(controls, None, Accuracy::TIGHTEST).expect("a state");
     let evaluation = objective.differentiate(controls, &state).expect("a gradient");
-    (evaluation.value, evaluation.subgradient, state)
+    (evaluation.value, evaluation.subgradient, state.into_states().remove(0))
 }
 
 pub fn number(value: &Value) -> f64 {

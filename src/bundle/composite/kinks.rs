@@ -16,6 +16,8 @@ use crate::panics::without_panic;
 
 /// Beyond this share, a departure counts as that of kinks.
 const LEAST_SHARE: f64 = 0.2;
+/// Departures that are at most this share of the outputs are their rounding.
+const ROUNDING: f64 = 1e-11;
 /// After so many steps in a row that have paid, one that does not is forgiven.
 const FORGIVING: usize = 3;
 
@@ -58,7 +60,9 @@ impl Seen<'_> {
         let (change, weights) = (&end.outputs - &start.outputs, first.abs() + last.abs());
         let linear = weights.dot(&(&change - &ahead).abs());
         let trapezoidal = weights.dot(&(&change - (&ahead + behind) * 0.5).abs());
-        if linear > 0.0 { trapezoidal / linear } else { 0.0 }
+        // The departure of outputs that are linear is rounding, which no rule removes.
+        let sizes = weights.dot(&(start.outputs.abs() + end.outputs.abs()));
+        if linear > ROUNDING * sizes { trapezoidal / linear } else { 0.0 }
     }
 
     /// Whether the model predicts the change of Θ to a tenth: the outputs follow their linearization.

@@ -8,7 +8,7 @@
 
 use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
-use crate::composite::{Linearization, OuterFunction};
+use crate::composite::{Linearization, OuterFunction, OuterPart};
 use crate::{Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
@@ -33,7 +33,13 @@ pub struct OuterCut {
 
 impl OuterCut {
     pub(super) fn at(outer: &dyn OuterFunction, outputs: Vector) -> Result<Self, SubproblemError> {
-        let (value, subgradient) = (outer.value(&outputs), outer.subgradient(&outputs));
+        let part = OuterPart { value: outer.value(&outputs), gradient: outer.subgradient(&outputs) };
+        Self::of_part(part, outputs)
+    }
+
+    /// The cut of one of the functions whose maximum h is.
+    pub(super) fn of_part(part: OuterPart, outputs: Vector) -> Result<Self, SubproblemError> {
+        let OuterPart { value, gradient: subgradient } = part;
         let (expected, found) = (outputs.len(), subgradient.len());
         if expected != found {
             return Err(SubproblemError::OuterSize { expected, found });

@@ -3,6 +3,7 @@
 //! ```text
 //! min over d   h(c + G d) + u‖d‖²/2,   x + d ∈ U
 //! h smooth:    Newton's method, each step a quadratic program with Gᵀ∇²h G + u W, and a line search
+//! h = max h_k: with smooth h_k, each step a quadratic program with all of them and Σ λ_k Gᵀ∇²h_k G + u W
 //! of cones:    an interior-point method (cones.rs), checked by weak duality
 //! else:        max_j h(c_j) + ⟨w_j, c + G d − c_j⟩ in place of h, cuts added until they meet h
 //! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
@@ -18,7 +19,7 @@ use crate::bundle::proposers::proposal::SubproblemError;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 #[cfg(feature = "interior-point")]
 use crate::composite::Epigraph;
-use crate::composite::Linearization;
+use crate::composite::{Linearization, OuterPart};
 use crate::interruption::interrupted;
 #[cfg(feature = "interior-point")]
 use crate::panics::without_panic;
@@ -52,8 +53,14 @@ impl CompositeModel<'_> {
     pub(crate) fn solve(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
         let Linearization { outputs, jacobian, .. } = self.linearization;
         solver.forget();
-        match self.outer.curvature(outputs, jacobian) {
-            Some(_) => self.solve_by_newton(solver),
+        let parts = self.outer.parts(outputs).len();
+        match self.outer.parts_curvature(outputs, jacobian, &vec![1.0 / parts as f64; parts]) {
+            Some(_) if parts == 1 => self.solve_by_newton(solver, parts),
+            // Where steps become too short along a curved edge of h, cuts go on from its parts.
+            Some(_) => self.solve_by_newton(solver, parts).or_else(|error| match error {
+                SubproblemError::Unusable => self.solve_by_cuts(solver, vec![]),
+                error => Err(error),
+            }),
             None => {
                 #[cfg(feature = "interior-point")]
                 if let Some(epigraph) = self.outer.epigraph() {
@@ -102,32 +109,59 @@ impl CompositeModel<'_> {
         self.solve_by_cuts(solver, vec![cut, there])
     }
 
-    fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
+    fn solve_by_newton(&self, solver: &mut EpigraphQpSolver, count: usize) -> Result<CompositeStep, SubproblemError> {
         let jacobian = &self.linearization.jacobian;
         // Where the base lies outside the set, as before a closing step, the step of length 0 is not feasible.
         let mut step = project(self.set, self.base)? - self.base;
         let mut merit = self.merit(&step);
+        let mut weights: Option<Vec<f64>> = None;
+        let ids: Vec<u64> = (0..count as u64).collect();
         for _ in 0..MAX_NEWTON {
             still_wanted()?;
-            let at = OuterCut::at(self.outer, self.outputs(&step))?;
-            self.error(&at)?;
-            let Some(curvature) = self.outer.curvature(&at.outputs, jacobian) else { break };
+            let parts = self.parts(&step, count)?;
+            let highest = parts.iter().map(|part| part.value).fold(f64::NEG_INFINITY, f64::max);
+            let offsets: Vec<f64> = parts.iter().map(|part| highest - part.value).collect();
+            let of_highest = || offsets.iter().map(|offset| f64::from(u8::from(*offset == 0.0))).collect();
+            let own = weights.take().unwrap_or_else(of_highest);
+            let Some(curvature) = self.outer.parts_curvature(&parts[0].outputs, jacobian, &own) else { break };
             let metric = self.with_metric(curvature.clone());
-            let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
-            let (slopes, point) = ([slope], self.base + &step);
-            let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0], gram: None };
+            let slope = |part: &OuterCut| jacobian.tr_mul(&part.subgradient) + self.pull(&step);
+            let slopes: Vec<Vector> = parts.iter().map(slope).collect();
+            let point = self.base + &step;
+            let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
             let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)
                 .map_err(|error| negative_curvature(curvature).unwrap_or_else(|| error.into()))?;
-            let promised = -slopes[0].dot(&solution.step);
-            if promised <= SOLVED * merit.abs() + ROUNDING * self.value.abs() {
-                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], multipliers(&solution)));
-            }
-            let Some((next, lower)) = self.search(&step, &solution.step, merit, promised) else {
-                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], multipliers(&solution)));
+            let rise = |(slope, offset): (&Vector, &f64)| slope.dot(&solution.step) - offset;
+            let promised = -slopes.iter().zip(&offsets).map(rise).fold(f64::NEG_INFINITY, f64::max);
+            let ends = promised <= SOLVED * merit.abs() + ROUNDING * self.value.abs();
+            let next = if ends { None } else { self.search(&step, &solution.step, merit, promised) };
+            let Some((next, lower)) = next else {
+                let mut cuts = parts;
+                let own = |index: usize| if count == 1 { 1.0 } else { solution.cut_multipliers[index] };
+                cuts.iter_mut().enumerate().for_each(|(index, cut)| cut.multiplier = own(index));
+                cuts.retain(|cut| cut.multiplier > 0.0);
+                return Ok(self.solved(step, cuts, multipliers(&solution)));
             };
+            weights = (count > 1).then(|| solution.cut_multipliers.clone());
             (step, merit) = (next, lower);
         }
         Err(SubproblemError::Unusable)
+    }
+
+    /// The parts of h at a step, as cuts of it.
+    fn parts(&self, step: &Vector, count: usize) -> Result<Vec<OuterCut>, SubproblemError> {
+        let outputs = self.outputs(step);
+        if count == 1 {
+            let cut = OuterCut::at(self.outer, outputs)?;
+            self.error(&cut)?;
+            return Ok(vec![cut]);
+        }
+        let cut = |part: OuterPart| {
+            let cut = OuterCut::of_part(part, outputs.clone())?;
+            self.error(&cut)?;
+            Ok(cut)
+        };
+        self.outer.parts(&outputs).into_iter().map(cut).collect()
     }
 
     /// `from` plus `step`, which is halved until the merit falls enough, with the merit there; none where rounding

@@ -3,12 +3,12 @@
 use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, check_bound};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
-use nonsmooth::composite::{OuterFunction, OutputPiece};
+use nonsmooth::composite::{OuterFunction, OuterPart, OutputPiece};
 use nonsmooth::{ConstraintKind, Matrix, Vector};
 use std::ops::Range;
 
-/// Pressures over the largest one from which nodes are pieces of the limited peak: a step of the optimizer may make any
-/// of them the largest.
+/// Pressures over the bound, or over the largest pressure where that is less, from which nodes are pieces of the limited
+/// peak: a step of the optimizer may make any of them the largest, and takes load from all that are beyond the bound.
 const NEAR_PEAK: f64 = 0.5;
 
 /// What is minimised of one case.
@@ -91,7 +91,7 @@ impl CasesCost {
     }
 
     /// Whether the volume is minimised.
-    pub fn is_volume(&self) -> bool {
+    pub(super) fn is_volume(&self) -> bool {
         self.volume.is_some()
     }
 
@@ -121,6 +121,26 @@ impl CasesCost {
             (CaseCost::Field(_), _) => outputs[part.own.start],
             (CaseCost::Volume, place) => place.map_or(f64::NAN, |place| outputs[place]),
         }
+    }
+
+    /// A subgradient of the sum of the weighted measures of some cases.
+    fn gradient_of(&self, outputs: &Vector, counts: impl Fn(usize) -> bool) -> Vector {
+        let mut gradient = Vector::zeros(outputs.len());
+        for (_, part) in self.parts.iter().enumerate().filter(|(index, _)| counts(*index)) {
+            let own = match &part.cost {
+                CaseCost::Pressure(cost) => cost.subgradient(&slice(outputs, &part.own)) * part.weight,
+                CaseCost::Field(_) | CaseCost::Volume => Vector::from_element(part.own.len(), part.weight),
+            };
+            gradient.rows_mut(part.own.start, part.own.len()).copy_from(&own);
+        }
+        gradient
+    }
+
+    /// The curvature of the measure of a case, if it has one.
+    fn curvature_of(&self, part: &Part, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        let CaseCost::Pressure(cost) = &part.cost else { return None };
+        let rows = jacobian.rows(part.own.start, part.own.len()).into_owned();
+        cost.curvature(&slice(outputs, &part.own), &rows)
     }
 
     /// The first of the worst cases.
@@ -202,15 +222,7 @@ impl OuterFunction for CasesCost {
             return subgradient;
         }
         let only = (self.over == Over::Worst).then(|| self.worst(outputs));
-        let parts = self.parts.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index));
-        for (_, part) in parts {
-            let own = match &part.cost {
-                CaseCost::Pressure(cost) => cost.subgradient(&slice(outputs, &part.own)) * part.weight,
-                CaseCost::Field(_) | CaseCost::Volume => Vector::from_element(part.own.len(), part.weight),
-            };
-            subgradient.rows_mut(part.own.start, part.own.len()).copy_from(&own);
-        }
-        subgradient
+        self.gradient_of(outputs, |case| only.is_none_or(|only| only == case))
     }
 
     /// Σ w_k times the curvature of the measures; none for the worst of several cases, which has kinks, and where a
@@ -221,13 +233,35 @@ impl OuterFunction for CasesCost {
         }
         let mut sum = Matrix::zeros(jacobian.ncols(), jacobian.ncols());
         for part in &self.parts {
-            let CaseCost::Pressure(cost) = &part.cost else { return None };
-            let rows = jacobian.rows(part.own.start, part.own.len()).into_owned();
-            let own = cost.curvature(&slice(outputs, &part.own), &rows)?;
+            let own = self.curvature_of(part, outputs, jacobian)?;
             if self.parts.len() == 1 && part.weight == 1.0 {
                 return Some(own);
             }
             sum += own * part.weight;
+        }
+        Some(sum)
+    }
+
+    /// The weighted measures of the cases where the worst counts; else Θ itself.
+    fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
+        if self.volume.is_some() || self.over == Over::Sum || self.parts.len() == 1 {
+            return vec![OuterPart { value: self.value(outputs), gradient: self.subgradient(outputs) }];
+        }
+        let part = |(index, part): (usize, &Part)| OuterPart {
+            value: part.weight * self.value_of(part, outputs),
+            gradient: self.gradient_of(outputs, |case| case == index),
+        };
+        self.parts.iter().enumerate().map(part).collect()
+    }
+
+    /// That of all measures; none where one has none.
+    fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, weights: &[f64]) -> Option<Matrix> {
+        if self.over == Over::Sum || self.parts.len() == 1 {
+            return self.curvature(outputs, jacobian);
+        }
+        let mut sum = Matrix::zeros(jacobian.ncols(), jacobian.ncols());
+        for (part, weight) in self.parts.iter().zip(weights) {
+            sum += self.curvature_of(part, outputs, jacobian)? * (part.weight * weight);
         }
         Some(sum)
     }
@@ -254,7 +288,8 @@ impl OuterFunction for CasesCost {
                 continue;
             }
             let nodes = pressures.iter().enumerate();
-            let near = nodes.filter(|(_, pressure)| **pressure == peak || **pressure >= NEAR_PEAK * peak);
+            let least = NEAR_PEAK * peak.min(limit.bound);
+            let near = nodes.filter(|(_, pressure)| **pressure == peak || **pressure >= least);
             pieces.extend(near.map(|(index, pressure)| OutputPiece {
                 constraint,
                 value: pressure - limit.bound,

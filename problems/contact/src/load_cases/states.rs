@@ -21,6 +21,11 @@ impl<S> CaseStates<S> {
         Self { control, states, tangents }
     }
 
+    /// The states alone, in the order of the cases.
+    pub fn into_states(self) -> Vec<ContactState<S>> {
+        self.states
+    }
+
     /// Keeps the forward derivatives of a case.
     pub(super) fn keep_tangents(&self, case: usize, tangents: Tangents) {
         // Those found first are as good.
