@@ -91,7 +91,11 @@ pub fn check(
                 let row = Vector::from_vec(piece.row(&tangents, &velocities));
                 let error = (row - gradient).norm() / gradient.norm();
                 tally.errors[1] = tally.errors[1].max(error);
-                assert!(error < OF_ROWS, "{measure:?}, {kind:?}, shape {seed}: a row is off by {error:.1e}");
+                assert!(
+                    error < OF_ROWS,
+                    "{measure:?}, {kind:?}, shape {seed}: a row is off by {error:.1e}; {piece:?}, slope {:.1e}",
+                    gradient.norm()
+                );
             }
             let near = state.forces.kink.smallest_margin.min(distance_of_pieces(&pieces));
             if near < NEAR_KINK {
