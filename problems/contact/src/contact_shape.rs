@@ -11,7 +11,7 @@
 
 use crate::cost::PressureOutputs;
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, TangentsOf, ValueError,
+    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, Tangents, TangentsOf, ValueError,
 };
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
@@ -204,6 +204,54 @@ impl<S: ContactSolver> ContactShape<S> {
         problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area)
     }
 
+    /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows of
+    /// [pieces](crate::cost::FieldPiece::row) need. Their products count among those of the state.
+    ///
+    /// # Errors
+    /// [`OracleError`] when the linearized problems have no solution.
+    pub fn tangents(
+        &self,
+        state: &ContactState<S::State>,
+        of: TangentsOf,
+        accuracy: Accuracy,
+    ) -> Result<Tangents, OracleError> {
+        let changes = unit_changes(self.control_dimension());
+        let tangents = self.solver.tangents(&state.solution, &changes, of, accuracy.tolerance()).map_err(oracle)?;
+        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
+        Ok(tangents)
+    }
+
+    /// The linearization of the outputs at a state by its [tangents](Self::tangents).
+    ///
+    /// # Errors
+    /// [`OracleError`] for another number of controls.
+    pub fn linearize_by(
+        &self,
+        control: &Vector,
+        state: &ContactState<S::State>,
+        tangents: &Tangents,
+    ) -> Result<Linearization, OracleError> {
+        self.check_dimension(control)?;
+        let (problem, outputs) = (self.problem(), self.outputs(state));
+        let (points, areas) = (&problem.boundary.points, state.rows.areas());
+        let changes = unit_changes(control.len());
+        let velocities = problem.map.velocities(&changes);
+        let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
+        let mut jacobian = Matrix::zeros(outputs.len(), control.len());
+        for (k, mut column) in jacobian.column_iter_mut().enumerate() {
+            let moved = lower.as_ref().map(|lower| problem.area_changes(lower, &velocities, k));
+            let forces = |node: usize| tangents.forces[k][points[node].start];
+            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
+            column.copy_from_slice(&changes);
+        }
+        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
+        let inactive = InactiveConstraints {
+            slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
+            jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),
+        };
+        Ok(Linearization { outputs, jacobian, accuracy: tangents.residual, inactive: Some(inactive) })
+    }
+
     fn check_dimension(&self, control: &Vector) -> Result<(), OracleError> {
         Ok(InputError::check_vector("control", self.control_dimension(), control)?)
     }
@@ -283,31 +331,14 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         accuracy: Accuracy,
     ) -> Result<Linearization, OracleError> {
         self.check_dimension(control)?;
-        let (problem, outputs) = (self.problem(), self.outputs(state));
-        let unit = |k: usize| (0..control.len()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let changes: Vec<Vec<f64>> = (0..control.len()).map(unit).collect();
-        let tangents = self
-            .solver
-            .tangents(&state.solution, &changes, TangentsOf::Contact, accuracy.tolerance())
-            .map_err(oracle)?;
-        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
-        let (points, areas) = (&problem.boundary.points, state.rows.areas());
-        let velocities = problem.map.velocities(&changes);
-        let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
-        let mut jacobian = Matrix::zeros(outputs.len(), control.len());
-        for (k, mut column) in jacobian.column_iter_mut().enumerate() {
-            let moved = lower.as_ref().map(|lower| problem.area_changes(lower, &velocities, k));
-            let forces = |node: usize| tangents.forces[k][points[node].start];
-            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
-            column.copy_from_slice(&changes);
-        }
-        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
-        let inactive = InactiveConstraints {
-            slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
-            jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),
-        };
-        Ok(Linearization { outputs, jacobian, accuracy: tangents.residual, inactive: Some(inactive) })
+        self.linearize_by(control, state, &self.tangents(state, TangentsOf::Contact, accuracy)?)
     }
+}
+
+/// A change of every control by 1.
+fn unit_changes(count: usize) -> Vec<Vec<f64>> {
+    let unit = |k: usize| (0..count).map(|i| f64::from(u8::from(i == k))).collect();
+    (0..count).map(unit).collect()
 }
 
 /// Mechanics' reasons in the framework's words.
