@@ -204,8 +204,8 @@ impl<S: ContactSolver> ContactShape<S> {
         problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area)
     }
 
-    /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows of
-    /// [pieces](crate::cost::FieldPiece::row) need. Their products count among those of the state.
+    /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows
+    /// of [pieces](crate::cost::FieldPiece::row) need. Their products count among those of the state.
     ///
     /// # Errors
     /// [`OracleError`] when the linearized problems have no solution.

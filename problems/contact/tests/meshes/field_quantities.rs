@@ -1,5 +1,5 @@
-//! Stresses and displacements of blocks in a lattice, whose inner nodes move too, along true normals: contact rows turn,
-//! and middle nodes of contact faces are tied to their ends.
+//! Stresses and displacements of blocks in a lattice, whose inner nodes move too, along true normals: contact rows
+//! turn, and middle nodes of contact faces are tied to their ends.
 
 use crate::cases::{obstacles, pressed, shape_and_direction};
 use crate::field_check::{check, conclude};
