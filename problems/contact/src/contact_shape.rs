@@ -209,24 +209,37 @@ impl<S: ContactSolver> ContactShape<S> {
         problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area)
     }
 
-    /// Outputs with their Jacobian, and the forward derivatives behind it, with those of the displacements if these are
-    /// asked for.
+    /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows
+    /// of [pieces](crate::cost::FieldPiece::row) need. Their products count among those of the state.
     ///
     /// # Errors
-    /// As [`OutputJacobian::linearize`].
-    pub(crate) fn linearize_with(
+    /// [`OracleError`] when the linearized problems have no solution.
+    pub fn tangents(
+        &self,
+        state: &ContactState<S::State>,
+        of: TangentsOf,
+        accuracy: Accuracy,
+    ) -> Result<Tangents, OracleError> {
+        let changes = unit_changes(self.control_dimension());
+        let tangents = self.solver.tangents(&state.solution, &changes, of, accuracy.tolerance()).map_err(oracle)?;
+        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
+        Ok(tangents)
+    }
+
+    /// The linearization of the outputs at a state by its [tangents](Self::tangents).
+    ///
+    /// # Errors
+    /// [`OracleError`] for another number of controls.
+    pub fn linearize_by(
         &self,
         control: &Vector,
         state: &ContactState<S::State>,
-        accuracy: Accuracy,
-        of: TangentsOf,
-    ) -> Result<(Linearization, Tangents), OracleError> {
+        tangents: &Tangents,
+    ) -> Result<Linearization, OracleError> {
         self.check_dimension(control)?;
         let (problem, outputs) = (self.problem(), self.outputs(state));
-        let changes = unit_changes(control.len());
-        let tangents = self.solver.tangents(&state.solution, &changes, of, accuracy.tolerance()).map_err(oracle)?;
-        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
         let (points, areas) = (&problem.boundary.points, state.rows.areas());
+        let changes = unit_changes(control.len());
         let velocities = problem.map.velocities(&changes);
         let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
         let mut jacobian = Matrix::zeros(outputs.len(), control.len());
@@ -241,8 +254,7 @@ impl<S: ContactSolver> ContactShape<S> {
             slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
             jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),
         };
-        let accuracy = tangents.residual;
-        Ok((Linearization { outputs, jacobian, accuracy, inactive: Some(inactive) }, tangents))
+        Ok(Linearization { outputs, jacobian, accuracy: tangents.residual, inactive: Some(inactive) })
     }
 
     fn check_dimension(&self, control: &Vector) -> Result<(), OracleError> {
@@ -323,13 +335,15 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         state: &Self::State,
         accuracy: Accuracy,
     ) -> Result<Linearization, OracleError> {
-        Ok(self.linearize_with(control, state, accuracy, TangentsOf::Contact)?.0)
+        self.check_dimension(control)?;
+        self.linearize_by(control, state, &self.tangents(state, TangentsOf::Contact, accuracy)?)
     }
 }
 
-/// A change of every control by one.
+/// A change of every control by 1.
 pub(crate) fn unit_changes(count: usize) -> Vec<Vec<f64>> {
-    (0..count).map(|k| (0..count).map(|i| f64::from(u8::from(i == k))).collect()).collect()
+    let unit = |k: usize| (0..count).map(|i| f64::from(u8::from(i == k))).collect();
+    (0..count).map(unit).collect()
 }
 
 /// Mechanics' reasons in the framework's words.

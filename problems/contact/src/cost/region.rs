@@ -37,8 +37,8 @@ pub struct RegionCells {
 const ROUNDING: f64 = 1e-12;
 
 impl RegionCells {
-    /// What `compute` makes of every cell, per body, for solved bodies with what does not depend on the shape: given its
-    /// nodes, shear modulus and displacements.
+    /// What `compute` makes of every cell, per body, for solved bodies with what does not depend on the shape: given
+    /// its nodes, shear modulus and displacements.
     pub(super) fn map<T: Send>(
         &self,
         bodies: &[Body],

@@ -8,8 +8,7 @@
 
 use crate::direct::compliant_body::ContactBody;
 use crate::direct::compliant_contact::CompliantContact;
-use crate::direct::shape::ShapeLoads;
-use crate::direct::tangents::CondensedTangents;
+use crate::direct::tangents::{CondensedTangents, ShapeLoads};
 use crate::linear::dense::multiply;
 use crate::linear::vector::add_scaled;
 use faer::Mat;

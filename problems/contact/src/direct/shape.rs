@@ -11,20 +11,11 @@ use crate::body::shape_sensitivity::position_sensitivities;
 use crate::direct::adjoint::CondensedAdjoint;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::solver::{DirectSolver, DirectState};
+use crate::direct::tangents::ShapeLoads;
 use crate::equilibrium::{RowChange, RowSensitivities};
 use crate::linear::vector::add_scaled;
 use crate::shape::Velocities;
 use faer::Mat;
-
-/// What some changes of the shape do to the contact problem, one column or vector per change.
-pub(super) struct ShapeLoads {
-    /// Forces on the contact dofs of every body, N.
-    pub contact: Vec<Mat<f64>>,
-    /// Those among them that turned contact rows cause, N.
-    pub turned: Vec<Mat<f64>>,
-    /// ∂B u − ∂g over the packed rows, mm.
-    pub approaches: Vec<Vec<f64>>,
-}
 
 impl DirectSolver {
     /// ∂J/∂x per node of the lower body, from its displacements u and their adjoint p.

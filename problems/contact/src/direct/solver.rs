@@ -279,7 +279,7 @@ impl ContactSolver for DirectSolver {
         let kept = (of == TangentsOf::Displacements).then(|| forces.clone());
         let loads = self.shape_loads(state, &velocities, forces);
         let linearizations = &state.solution.linearizations;
-        let mut found = tangents(&state.contact, linearizations, &loads.contact, &loads.approaches);
+        let mut found = tangents(&state.contact, linearizations, &loads);
         found.tangents.displacements = kept.map(|forces| displacement_tangents(&state.contact, forces, &loads, &found));
         let CondensedTangents { tangents, .. } = found;
         let displacements = tangents.displacements.iter().flatten();

@@ -18,6 +18,16 @@ use crate::linear::vector::{dot, norm};
 use faer::Mat;
 use nalgebra::DVector;
 
+/// What some changes of the shape do to the contact problem, one column or vector per change.
+pub(super) struct ShapeLoads {
+    /// Forces on the contact dofs of every body, N.
+    pub contact: Vec<Mat<f64>>,
+    /// Those among them that turned contact rows cause, N.
+    pub turned: Vec<Mat<f64>>,
+    /// ∂B u − ∂g over the packed rows, mm.
+    pub approaches: Vec<Vec<f64>>,
+}
+
 /// Tangents of the condensed problem.
 pub(super) struct CondensedTangents {
     /// Forces and openings.
@@ -26,14 +36,13 @@ pub(super) struct CondensedTangents {
     pub amplitudes: Vec<Vec<f64>>,
 }
 
-/// Tangents at given derivatives, for forces on the contact dofs of every body (N, one column per change) and
-/// ∂B u − ∂g over the packed rows of every change, mm.
+/// Tangents of forces and openings at given derivatives, for what changes of the shape do to the contact problem.
 pub(super) fn tangents(
     contact: &CompliantContact,
     linearizations: &[Linearization],
-    contact_loads: &[Mat<f64>],
-    approaches: &[Vec<f64>],
+    loads: &ShapeLoads,
 ) -> CondensedTangents {
+    let ShapeLoads { contact: contact_loads, approaches, .. } = loads;
     let boundary = &contact.problem.boundary;
     let (count, motions) = (contact.row_count(), contact.resultant.len());
     let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);

@@ -146,7 +146,8 @@ impl<S: ContactSolver> LoadCases<S> {
         let (case, state) = (&self.cases[index], &states[index]);
         let mut known = if case.with_pressures || case.with_tangents {
             let of = if case.with_tangents { TangentsOf::Displacements } else { TangentsOf::Contact };
-            let (known, tangents) = case.shape.linearize_with(control, state, accuracy, of)?;
+            let tangents = case.shape.tangents(state, of, accuracy)?;
+            let known = case.shape.linearize_by(control, state, &tangents)?;
             if case.with_tangents {
                 states.keep_tangents(index, tangents);
             }

@@ -5,6 +5,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod error_estimate;
+#[path = "../common/field_check.rs"]
+mod field_check;
+mod field_quantities;
 mod objectives;
 mod prescribed;
 mod reference_cases;

@@ -83,6 +83,20 @@ fn stress_norm() {
 }
 
 #[test]
+fn largest_stress_and_displacement() {
+    for scene in scenes() {
+        let region = region(&scene, None);
+        let stress = FieldMeasure::PeakStress { region: region.clone(), without_held: false };
+        differentiated("largest stress", &scene, |_| Measure::Field(stress.clone()));
+        for (component, least) in [(Some(2), true), (Some(2), false), (None, false)] {
+            let measure = FieldMeasure::Displacement { region: region.clone(), component, least };
+            let name = format!("displacement {component:?}, least {least}");
+            differentiated(&name, &scene, |_| Measure::Field(measure.clone()));
+        }
+    }
+}
+
+#[test]
 fn compliance() {
     for scene in scenes() {
         differentiated("compliance", &scene, |_| Measure::Field(FieldMeasure::Compliance));

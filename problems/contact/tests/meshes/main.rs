@@ -4,6 +4,9 @@
 
 mod cases;
 mod elements;
+#[path = "../common/field_check.rs"]
+mod field_check;
+mod field_quantities;
 mod grid;
 mod hertz;
 mod lame;

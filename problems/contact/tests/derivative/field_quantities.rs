@@ -1,0 +1,155 @@
+//! Stresses and displacements of blocks at random shapes: both paths, one and two bodies, with and without friction.
+
+use crate::common::start_height;
+use crate::field_check::{check, conclude};
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{FieldCost, FieldMeasure, Region};
+use contact::equilibrium::{ContactSolver, TangentsOf};
+use contact::scene::{Scene, hertz, signorini};
+use nonsmooth::verify::seeded_direction;
+use nonsmooth::{Accuracy, StateSolver, Vector};
+
+const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
+
+fn face(body: usize, name: &str) -> Region {
+    Region { body: Some(body), face: Some(name.into()), ..Region::WHOLE }
+}
+
+fn measures(scene: &Scene) -> Vec<FieldMeasure> {
+    let height = start_height(scene);
+    // Away from the supports, and from nodes that stick, where displacements are 0 whatever the shape.
+    let inner = Region {
+        lower: [0.2 * height, 0.2 * height, 0.3 * height],
+        upper: [f64::INFINITY, f64::INFINITY, 0.7 * height],
+        body: Some(0),
+        ..Region::WHOLE
+    };
+    let above = Region { lower: [0.2 * height, 0.2 * height, 0.3 * height], ..Region::WHOLE };
+    let displacement = |region, component, least| FieldMeasure::Displacement { region, component, least };
+    let mut measures = vec![
+        FieldMeasure::PeakStress { region: Region::WHOLE, without_held: true },
+        FieldMeasure::PeakStress { region: Region { body: Some(0), ..above.clone() }, without_held: false },
+        displacement(face(0, "top"), Some(2), false),
+        displacement(face(0, "x1-max"), Some(0), false),
+        displacement(inner, Some(0), true),
+        displacement(above, None, false),
+        FieldMeasure::StressNorm { region: Region::WHOLE, exponent: 8.0 },
+        FieldMeasure::Compliance,
+    ];
+    if scene.upper.is_some() {
+        measures.push(displacement(face(1, "bottom"), Some(1), true));
+    }
+    measures
+}
+
+fn case(scene: &Scene, seed: u64) -> [Vector; 2] {
+    let height = start_height(scene);
+    let at = seeded_direction(scene.control_count(), 3 * seed + 1).map(|entry| height * (0.98 + 0.01 * entry));
+    [at, seeded_direction(scene.control_count(), 3 * seed + 2)]
+}
+
+fn check_scene(scene: Scene, friction: f64) {
+    let scene = scene.with_bricks([4; 3], [2, 1, 2]).with_friction(friction);
+    let measures = measures(&scene);
+    for kind in KINDS {
+        let found = check(&scene, kind, &measures, start_height(&scene), |seed| case(&scene, seed));
+        conclude(&format!("{}, friction {friction}, {kind:?}", scene.name), &measures, &found);
+    }
+}
+
+#[test]
+fn quantities_of_one_body() {
+    check_scene(signorini().unwrap(), 0.0);
+}
+
+#[test]
+fn quantities_of_one_body_with_friction() {
+    check_scene(signorini().unwrap(), 0.3);
+}
+
+#[test]
+fn quantities_of_two_bodies() {
+    check_scene(hertz().unwrap(), 0.0);
+}
+
+#[test]
+fn quantities_of_two_bodies_with_friction() {
+    check_scene(hertz().unwrap(), 0.3);
+}
+
+/// The message with which a measure is refused.
+fn refused(measure: FieldMeasure) -> String {
+    let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
+    let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
+    FieldCost::named("limits[2]", measure, shape.problem()).unwrap_err().to_string()
+}
+
+#[test]
+fn measures_without_a_meaning_are_refused() {
+    let displacement = |region, component, least| FieldMeasure::Displacement { region, component, least };
+    let nearby = Region { upper: [1.0, 100.0, 100.0], ..face(0, "x1-max") };
+    let low = Region { upper: [100.0, 100.0, 10.0], ..Region::WHOLE };
+    let at_supports = Region { upper: [25.0, 100.0, 100.0], ..Region::WHOLE };
+    for (measure, words) in [
+        (displacement(Region::WHOLE, Some(3), false), ["limits[2].component = 3", "0, 1 or 2"]),
+        (displacement(Region::WHOLE, None, true), ["limits[2].least = true", "length"]),
+        (displacement(face(0, "topp"), None, false), ["limits[2].region.face = \"topp\"", "did you mean \"top\""]),
+        (displacement(face(1, "top"), None, false), ["limits[2].region.body = upper", "no upper one"]),
+        (displacement(nearby, None, false), ["limits[2].region", "node of the face"]),
+        (displacement(low, None, false), ["limits[2].region", "centre of a cell"]),
+        (
+            FieldMeasure::PeakStress { region: face(0, "top"), without_held: false },
+            ["limits[2].region.face = \"top\"", "whole cells"],
+        ),
+        (
+            FieldMeasure::PeakStress { region: at_supports, without_held: true },
+            ["limits[2].without_held = true", "every cell of the region"],
+        ),
+    ] {
+        let found = refused(measure);
+        assert!(words.iter().all(|words| found.contains(words)), "{found}");
+    }
+}
+
+/// Displacements come beside all else, which stays as it is to the last bit; both paths find them.
+#[test]
+fn tangents_of_displacements_change_nothing_else() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let scene = scene.with_bricks([4; 3], [2, 1, 2]).with_friction(0.3);
+        let [at, change] = case(&scene, 7);
+        let found = KINDS.map(|kind| {
+            let shape = ContactShape::new(scene.clone(), kind).unwrap();
+            let state = shape.solve(&at, None, Accuracy::TIGHTEST).unwrap().solution;
+            let solve = |of| {
+                let changes = [change.as_slice().to_vec(), at.as_slice().to_vec()];
+                shape.contact_solver().tangents(&state, &changes, of, 0.0).unwrap()
+            };
+            let [without, with] = [TangentsOf::Contact, TangentsOf::Displacements].map(solve);
+            assert_eq!((&without.forces, &without.openings), (&with.forces, &with.openings));
+            assert!(without.displacements.is_none() && without.residual == with.residual);
+            let more = with.applications - without.applications;
+            assert_eq!(more, if kind == SolverKind::Direct { 0 } else { 2 });
+            let displacements = with.displacements.unwrap();
+            assert!(displacements.iter().all(|column| column.len() == shape.problem().displacement_count()));
+            Vector::from_vec(displacements.concat())
+        });
+        let [torn, direct] = found;
+        let difference = (&torn - &direct).norm() / direct.norm();
+        assert!(difference < 1e-8, "{difference:.1e}");
+    }
+}
+
+/// Bodies that nothing loads and nothing touches have no displacements, whatever their shape.
+#[test]
+fn displacements_of_bodies_at_rest_do_not_change() {
+    let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
+    scene.lower.loads.clear();
+    for kind in KINDS {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
+        let at = shape.start() * 0.9;
+        let state = shape.solve(&at, None, Accuracy::TIGHTEST).unwrap().solution;
+        let changes = [vec![1.0; at.len()]];
+        let tangents = shape.contact_solver().tangents(&state, &changes, TangentsOf::Displacements, 0.0).unwrap();
+        assert_eq!(tangents.displacements, Some(vec![vec![0.0; shape.problem().displacement_count()]]));
+    }
+}
