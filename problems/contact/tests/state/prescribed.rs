@@ -116,8 +116,8 @@ fn both_solvers_find_one_state_with_all_its_displacements() {
         let [(torn_shape, torn), (direct_shape, direct)] =
             [SolverKind::Newton, SolverKind::Direct].map(|kind| solve(&scene, kind));
         assert_same(&torn, &direct, words);
-        let [torn, direct] = [(torn_shape, torn), (direct_shape, direct)]
-            .map(|(shape, state)| shape.fields(&state).unwrap().bodies);
+        let [torn, direct] =
+            [(torn_shape, torn), (direct_shape, direct)].map(|(shape, state)| shape.fields(&state).unwrap().bodies);
         for (one, other) in torn.iter().zip(&direct) {
             for (one, other) in one.displacement.iter().flatten().zip(other.displacement.iter().flatten()) {
                 assert!((one - other).abs() < 1e-8, "{words}: {one} {other}");
