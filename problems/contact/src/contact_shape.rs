@@ -14,7 +14,7 @@ use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, Tangents, TangentsOf, ValueError,
 };
 use crate::error::{ContactError, SceneError};
-use crate::fields::Fields;
+use crate::fields::{Fields, Resultants};
 use crate::plausibility::{self, Estimates, Warning};
 use crate::scene::Scene;
 use crate::solvers::{Processes, SolverPlan};
@@ -187,6 +187,14 @@ impl<S: ContactSolver> ContactShape<S> {
     /// [`OracleError::Failed`] for a state of another mesh.
     pub fn fields(&self, state: &ContactState<S::State>) -> Result<Fields, OracleError> {
         Ok(Fields::new(self.problem(), self.bodies(state)?, (&state.rows, &state.forces)))
+    }
+
+    /// Resultants of the forces on the bodies of a solved shape, reactions of their supports, and the largest stress.
+    ///
+    /// # Errors
+    /// [`OracleError::Failed`] for a state of another mesh.
+    pub fn resultants(&self, state: &ContactState<S::State>) -> Result<Resultants, OracleError> {
+        Ok(Resultants::new(self.problem(), &self.bodies(state)?, (&state.rows, &state.forces)))
     }
 
     /// All bodies of a solved shape: those that the state holds, else recovered now.

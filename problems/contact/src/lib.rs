@@ -48,7 +48,7 @@
 //! | [`direct`] | direct condensation: an independent path |
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
 //! | [`formula`] | formulas of x₁, x₂, x₃ |
-//! | [`fields`] | displacements, stresses and contact fields of a solved shape |
+//! | [`fields`] | displacements, stresses, contact fields and resultants of a solved shape |
 //! | [`friction_problem`] | the matrices of a shape, for other solvers |
 //! | [`solvers`] | the solver of a scene: by name, by choice, shared by several processes |
 //! | [`communication`] | what passes between the processes of a run |

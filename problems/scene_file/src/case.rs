@@ -325,7 +325,9 @@ fn counter_surface(
 ) -> Result<CounterSurface, SceneError> {
     Ok(match section {
         &CounterSection::Plane { height } => CounterSurface::Plane { height },
-        &CounterSection::Waves { base, first, second, period } => CounterSurface::Waves { base, first, second, period },
+        &CounterSection::Waves { base, first, second, period } => {
+            CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] }
+        }
         &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius, centre: [0.0; 2] },
         CounterSection::Grid { file, origin, size } => {
             let size = size.or(base);
@@ -356,7 +358,7 @@ fn start(
     let controls = match section {
         &StartSection::Plane { height } => return Ok((height, None)),
         &StartSection::Waves { base, first, second, period } => {
-            sampled(CounterSurface::Waves { base, first, second, period })
+            sampled(CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] })
         }
         StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?)),
         StartSection::Controls { heights } => heights.clone(),

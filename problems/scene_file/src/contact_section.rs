@@ -19,6 +19,11 @@ pub struct ContactSection {
     /// Default "projected" with contact.normal = "x3", else "surface".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaKind>,
+    /// How far the bodies are pressed into each other before loading: every gap is smaller by it. Negative: a
+    /// clearance. Default 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
+    pub interference: Option<f64>,
     /// Other friction coefficients on parts of the face.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<FrictionSection>,
@@ -46,6 +51,7 @@ impl ContactSection {
             normal,
             area: self.area.unwrap_or(area),
             friction,
+            interference: self.interference.unwrap_or_default(),
             friction_by_region: self.regions.iter().map(|part| (part.region.clone(), part.friction)).collect(),
         }
     }

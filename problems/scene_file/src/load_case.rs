@@ -107,10 +107,10 @@ impl CaseSection {
             scene.contact.friction = friction;
         }
         if let Some(interference) = self.interference {
-            let _ = interference; // MERGE-A scene.contact.interference = interference;
+            scene.contact.interference = interference;
         }
         if let Some(offset) = self.offset {
-            // MERGE-A scene.counter_surface = scene.counter_surface.moved(offset);
+            scene.counter_surface = scene.counter_surface.moved(offset);
             if let Some(upper) = &mut scene.upper {
                 upper.top += offset[2];
             }

@@ -5,6 +5,7 @@
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{NodeWeight, PressureMeasure};
 use contact::scene;
+use contact::scene::Held;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName, Objective, SceneFile, field_table, schema};
 use serde_json::Value;
@@ -141,12 +142,30 @@ fn contradictions_between_fields_are_refused() {
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "x1-max"),
         ("weight = \"nodes\"", "measure = \"peak-pressure\"\nexponent = 4", "objective.exponent"),
         ("[admissible]", "[optimizer]\ncontinuation = [6, 6]\n[admissible]", "optimizer.continuation"),
+        (
+            "held = [\"u1\"]",
+            "held = [\"u1\"]\ndisplacement = [0.1, 0.2, 0.0]",
+            "lower.supports[0].displacement[1] = 0.2",
+        ),
+        ("held = [\"u1\"]", "held = [\"u1\"]\nnormal_displacement = 0.2", "lower.supports[0].normal_displacement"),
     ] {
         assert!(scene.contains(right), "{right}");
         let file = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap();
         let message = Case::new(&file, &folder()).unwrap_err().to_string();
         assert!(message.contains(word), "{message}");
     }
+}
+
+#[test]
+fn prescribed_displacements_and_interference_reach_the_scene() {
+    let words = "held = [\"u1\", \"normal\"]\ndisplacement = [0.1, 0.0, 0.0]\nnormal_displacement = -0.1";
+    let scene = text("hertz").replacen("held = [\"u1\"]", words, 1);
+    let contact = "[contact]\ninterference = 0.02\n";
+    let file = SceneFile::parse(&scene.replacen("[contact]\n", contact, 1), "my.toml").unwrap();
+    let scene = Case::new(&file, &folder()).unwrap().scene;
+    let held: Vec<Held> = scene.lower.supports.iter().take(2).map(|support| support.held).collect();
+    assert_eq!(held, [Held::Components([Some(0.1), None, None]), Held::Normal(-0.1)]);
+    assert_eq!(scene.contact.interference, 0.02);
 }
 
 #[test]

@@ -72,6 +72,12 @@ impl Body {
         self.held.get(&node).map_or(&[], Directions::held)
     }
 
+    /// The held directions of a node, each with the first support of the scene that holds it; none for a tied node.
+    pub fn held_by(&self, node: u32) -> impl Iterator<Item = ([f64; 3], usize)> + '_ {
+        let held = self.held.get(&node).filter(|_| self.solid.ends_of(node).is_none());
+        held.into_iter().flat_map(|held| held.held().iter().copied().zip(held.supports().iter().copied()))
+    }
+
     /// The displacement that supports prescribe to a node, along the axes, mm: a sum of its held directions; 0 against
     /// its ends for a tied node.
     pub fn prescribed(&self, node: u32) -> [f64; 3] {

@@ -17,6 +17,8 @@ pub struct Directions {
     /// Those across the axes, without their parts along the held axes.
     oblique: Vec<[f64; 3]>,
     all: Vec<[f64; 3]>,
+    /// The first support that holds every direction, among those of the body.
+    supports: Vec<usize>,
     /// The displacement of least length that fulfils all conditions, mm.
     displacement: [f64; 3],
 }
@@ -57,7 +59,6 @@ impl Directions {
 
     /// Directions and displacement of the conditions.
     fn resolved(mut self) -> Result<Self, Conflict> {
-        let mut supports = Vec::new();
         for &Condition { axis, direction, value, support } in &self.conditions {
             let along = dot(direction, self.displacement);
             let Some((rest, length)) = rest_beyond(&self.all, direction) else {
@@ -65,7 +66,7 @@ impl Directions {
                 if (value - along).abs() > SAME * size {
                     let share = |place: &usize| dot(direction, self.all[*place]).abs();
                     let other = (0..self.all.len()).max_by(|a, b| share(a).total_cmp(&share(b)));
-                    let other = other.map_or(support, |place| supports[place]);
+                    let other = other.map_or(support, |place| self.supports[place]);
                     return Err(Conflict { supports: [other, support], values: [along, value] });
                 }
                 continue;
@@ -77,7 +78,7 @@ impl Directions {
                 axis => self.axes[axis] = true,
             }
             self.all.push(rest);
-            supports.push(support);
+            self.supports.push(support);
         }
         Ok(self)
     }
@@ -85,6 +86,11 @@ impl Directions {
     /// The held directions.
     pub fn held(&self) -> &[[f64; 3]] {
         &self.all
+    }
+
+    /// The first support that holds every direction, among those of the body.
+    pub fn supports(&self) -> &[usize] {
+        &self.supports
     }
 
     /// The prescribed displacement, along the axes, mm; a sum of held directions.

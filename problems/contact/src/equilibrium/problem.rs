@@ -58,8 +58,7 @@ impl ContactProblem {
         let boundary = ContactBoundary::new(&scene.contact, &bodies, &faces, partner)?;
         let start = map.positions(&scene.shape.start());
         let shapes = CellShapes::new(&bodies[0].mesh, &start, &faces);
-        let geometry =
-            ContactGeometry::new(faces, scene.counter_surface.clone(), scene.contact.normal, scene.contact.area);
+        let geometry = ContactGeometry::new(faces, scene.counter_surface.clone(), &scene.contact);
         let fixed = bodies.get(1).map(|upper| Arc::new(upper.mesh.nodes().to_vec()));
         let start_rows = ContactRows { nodes: Vec::new() };
         let (bodies, map) = (Arc::from(bodies), Arc::new(map));
@@ -256,13 +255,15 @@ impl ContactProblem {
     }
 
     /// What presses the bodies, N: Σ|f|, magnitudes of all nodal loads at the start, and E|u|√A, roughly what it takes
-    /// to press the largest prescribed displacement u into the contact area A. Zero where nothing moves the bodies.
+    /// to press the largest prescribed displacement and the interference into the contact area A. Zero where nothing
+    /// moves the bodies.
     pub fn load(&self) -> f64 {
         let bodies = self.bodies.iter().zip(self.start_positions());
         let forces = bodies.flat_map(|(body, positions)| nodal_forces(body, &positions));
         let loads: f64 = forces.map(|(_, [x, y, z])| (x * x + y * y + z * z).sqrt()).sum();
         let modulus = self.materials().map(Material::young_modulus).fold(0.0, f64::max);
-        loads + modulus * self.largest_prescribed() * self.contact_area().sqrt()
+        let moved = self.largest_prescribed() + self.scene.contact.interference.max(0.0);
+        loads + modulus * moved * self.contact_area().sqrt()
     }
 }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! P: onto the free directions,  c = |P n|,  m = P n/c:    d₀ = P n,   t_k: orthonormal in the range of P across m
 //! jump of row r = Σ_sides weight d_r·u,    force of the body on the counter surface = Σ λ_r d_r
-//! gap = (distance of the shapes) − n·(I − P) v,    v: jump that supports prescribe
+//! gap = (distance of the shapes) − (interference) − n·(I − P) v,    v: jump that supports prescribe
 //! d₀′ = P n′,   t_k′ = −(t_k·n′)/c m,   gap′,  A′
 //! ```
 //! A rotation of the tangential rows in their plane changes no force, so that its derivative is taken as zero.
@@ -14,7 +14,7 @@ use crate::body::mesh::CellFace;
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactStatus};
 use crate::error::ContactError;
 use crate::scalar::{Dual, Scalar};
-use crate::scene::{AreaKind, CounterSurface, Foot, NormalKind};
+use crate::scene::{AreaKind, ContactScene, CounterSurface, Foot, NormalKind};
 use crate::shape::Velocities;
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ pub struct NodeRows {
     pub normal: [f64; 3],
     /// Directions of its rows: P n, then the tangential ones; as many as the node has rows.
     pub directions: Vec<[f64; 3]>,
-    /// Gap before loading, mm; negative where the shapes overlap. A node whose nodes are all held in a direction is
+    /// Gap before loading less the interference, mm; negative where the shapes overlap. A node whose nodes are all held in a direction is
     /// where its supports put it along that direction.
     pub gap: f64,
     /// Tributary area A, mm².
@@ -49,6 +49,7 @@ pub struct ContactGeometry {
     counter: CounterSurface,
     normal: NormalKind,
     area: AreaKind,
+    interference: f64,
 }
 
 /// Length of P n from which a node counts as held along its normal.
@@ -73,8 +74,9 @@ pub struct RowChange {
 }
 
 impl ContactGeometry {
-    pub(crate) fn new(faces: Vec<CellFace>, counter: CounterSurface, normal: NormalKind, area: AreaKind) -> Self {
-        Self { faces, counter, normal, area }
+    pub(crate) fn new(faces: Vec<CellFace>, counter: CounterSurface, contact: &ContactScene) -> Self {
+        let &ContactScene { normal, area, interference, .. } = contact;
+        Self { faces, counter, normal, area, interference }
     }
 
     /// Whether the rows have the same directions for all shapes.
@@ -125,6 +127,7 @@ impl ContactGeometry {
                 })?,
             };
             let Foot { normal, mut gap, mut gap_slope, normal_slope } = foot;
+            gap -= self.interference;
             // What supports impose on all its nodes is no unknown, and no row of its own has it.
             for (i, imposed) in point.imposed.into_iter().enumerate() {
                 gap -= imposed * normal[i];

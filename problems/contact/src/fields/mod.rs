@@ -8,8 +8,10 @@
 
 mod bodies;
 mod contact;
+mod resultants;
 mod solved_shape;
 
 pub use bodies::BodyFields;
 pub use contact::ContactFields;
+pub use resultants::{BodyResultants, LargestStress, Resultants, SupportReaction};
 pub use solved_shape::Fields;

@@ -28,6 +28,9 @@ pub struct ContactScene {
     pub friction: f64,
     /// Other friction coefficients by the names of faces or node sets.
     pub friction_by_region: Vec<(String, f64)>,
+    /// How far the bodies are pressed into each other before loading, along the normals of the contact nodes, mm: every
+    /// gap is smaller by it. Negative: a clearance.
+    pub interference: f64,
 }
 
 impl ContactScene {
@@ -44,6 +47,7 @@ impl ContactScene {
             area: AreaKind::Projected,
             friction,
             friction_by_region: Vec::new(),
+            interference: 0.0,
         }
     }
 }

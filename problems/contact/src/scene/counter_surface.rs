@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Analytic surfaces of the paper, a plane, indenters with known solutions, and heights on a grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum CounterSurface {
-    /// `base + first·sin(2πx₁/period) + second·cos(2πx₂/period)`, paper (5.3).
+    /// `base + first·sin(2π(x₁ − o₁)/period) + second·cos(2π(x₂ − o₂)/period)`, paper (5.3) for the origin o = 0.
     Waves {
         /// Mean height of the waves, mm.
         base: f64,
@@ -18,6 +18,8 @@ pub enum CounterSurface {
         second: f64,
         /// Length of the waves along both axes, mm.
         period: f64,
+        /// (x₁, x₂) of the origin o, mm.
+        origin: [f64; 2],
     },
     /// `apex + R − √(R² − r²)` at the distance r from the centre: a sphere that touches the height `apex` there.
     Sphere {
@@ -28,7 +30,8 @@ pub enum CounterSurface {
         /// (x₁, x₂) of the lowest point, mm.
         centre: [f64; 2],
     },
-    /// A flat strip punch along x₂: the height `height` where |x₁| ≤ `half_width`, higher by `relief` elsewhere.
+    /// A flat strip punch along x₂: the height `height` where |x₁ − `centre`| ≤ `half_width`, higher by `relief`
+    /// elsewhere.
     Punch {
         /// Height of its flat face, mm.
         height: f64,
@@ -36,6 +39,8 @@ pub enum CounterSurface {
         half_width: f64,
         /// How much higher the surface is beside the punch, mm.
         relief: f64,
+        /// x₁ of its middle, mm.
+        centre: f64,
     },
     /// A horizontal plane at a height.
     Plane {
@@ -122,6 +127,25 @@ impl CounterSurface {
         }
     }
 
+    /// The surface translated by a vector, mm.
+    #[must_use]
+    pub fn moved(&self, by: [f64; 3]) -> Self {
+        let along_base = |[x1, x2]: [f64; 2]| [x1 + by[0], x2 + by[1]];
+        let point = |x: [f64; 3]| std::array::from_fn(|axis| x[axis] + by[axis]);
+        let mut moved = self.clone();
+        match &mut moved {
+            Self::Waves { base, origin, .. } => (*base, *origin) = (*base + by[2], along_base(*origin)),
+            Self::Sphere { apex, centre, .. } => (*apex, *centre) = (*apex + by[2], along_base(*centre)),
+            Self::Punch { height, centre, .. } => (*height, *centre) = (*height + by[2], *centre + by[0]),
+            Self::Plane { height } => *height += by[2],
+            Self::Grid(grid) => *grid = grid.moved(by),
+            Self::TiltedPlane { point: x, .. } | Self::Ball { centre: x, .. } | Self::Cylinder { point: x, .. } => {
+                *x = point(*x);
+            }
+        }
+        moved
+    }
+
     /// Whether it is a height over (x₁, x₂).
     pub fn has_heights(&self) -> bool {
         !matches!(self, Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. })
@@ -130,14 +154,14 @@ impl CounterSurface {
     /// Height at (x₁, x₂), mm; NaN outside a sphere, and where the surface is no height over (x₁, x₂).
     pub fn height(&self, x1: f64, x2: f64) -> f64 {
         match self {
-            &Self::Waves { base, first, second, period } => {
+            &Self::Waves { base, first, second, period, origin: [o1, o2] } => {
                 let angle = 2.0 * std::f64::consts::PI / period;
-                first * (angle * x1).sin() + second * (angle * x2).cos() + base
+                first * (angle * (x1 - o1)).sin() + second * (angle * (x2 - o2)).cos() + base
             }
             &Self::Sphere { apex, radius, centre } => apex + rise(radius, [x1 - centre[0], x2 - centre[1]]),
             // Nodes on the edge belong to the face, whatever rounding says.
-            &Self::Punch { height, half_width, relief } => {
-                height + if x1.abs() <= half_width * (1.0 + 1e-9) { 0.0 } else { relief }
+            &Self::Punch { height, half_width, relief, centre } => {
+                height + if (x1 - centre).abs() <= half_width * (1.0 + 1e-9) { 0.0 } else { relief }
             }
             &Self::Plane { height } => height,
             Self::Grid(grid) => grid.height(x1, x2),
@@ -179,7 +203,7 @@ mod tests {
     fn curvatures_keep_within_the_bounds_and_come_near() {
         let size = [10.0, 7.0];
         for surface in [
-            CounterSurface::Waves { base: 3.0, first: -0.5, second: 0.7, period: 5.0 },
+            CounterSurface::Waves { base: 3.0, first: -0.5, second: 0.7, period: 5.0, origin: [0.6, -0.3] },
             CounterSurface::Sphere { apex: 1.0, radius: 20.0, centre: [0.0; 2] },
             CounterSurface::Sphere { apex: 1.0, radius: 30.0, centre: [4.0, 9.0] },
         ] {
@@ -196,6 +220,6 @@ mod tests {
             assert!((0.8..1.0 + 1e-6).contains(&largest), "{surface:?}: {largest}");
         }
         assert_eq!(CounterSurface::Plane { height: 3.0 }.pieces(size).map(|plane| plane.curvature), Some([0.0; 3]));
-        assert_eq!(CounterSurface::Punch { height: 1.0, half_width: 2.0, relief: 3.0 }.pieces(size), None);
+        assert_eq!(CounterSurface::Punch { height: 1.0, half_width: 2.0, relief: 3.0, centre: 0.0 }.pieces(size), None);
     }
 }

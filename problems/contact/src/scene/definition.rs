@@ -148,6 +148,8 @@ impl Scene {
             let valid = friction == 0.0 || positive(friction);
             SceneError::require(valid, "friction", friction, "a finite number ≥ 0")?;
         }
+        let interference = self.contact.interference;
+        SceneError::require(interference.is_finite(), "contact.interference", interference, "a finite number (mm)")?;
         self.counter_surface.check("counter_surface")?;
         self.validate_normals()?;
         match (&self.geometry, &self.shape) {

@@ -54,6 +54,13 @@ impl HeightGrid {
         Self { origin, ..self }
     }
 
+    /// The surface translated by a vector, mm.
+    #[must_use]
+    pub fn moved(&self, by: [f64; 3]) -> Self {
+        let origin = [self.origin[0] + by[0], self.origin[1] + by[1]];
+        Self { origin, heights: self.heights.iter().map(|height| height + by[2]).collect(), ..self.clone() }
+    }
+
     /// Height at (x₁, x₂), mm; beyond the base that of its edge.
     pub fn height(&self, x1: f64, x2: f64) -> f64 {
         let [(i, s), (j, t)] = [self.place(0, x1), self.place(1, x2)];

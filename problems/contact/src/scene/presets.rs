@@ -24,7 +24,13 @@ pub fn signorini() -> Result<Scene, SceneError> {
             vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 3000.0])],
         ),
         upper: None,
-        counter_surface: CounterSurface::Waves { base: 103.0, first: 1.0, second: 2.0, period: 100.0 },
+        counter_surface: CounterSurface::Waves {
+            base: 103.0,
+            first: 1.0,
+            second: 2.0,
+            period: 100.0,
+            origin: [0.0; 2],
+        },
         contact: ContactScene::along_x3(BlockFace::Top, 0.3),
         shape: ShapeScene::Heights(HeightShape {
             spline: SplineKind::BSpline(3),

@@ -27,7 +27,7 @@ pub fn obstacles() -> Vec<(&'static str, CounterSurface)> {
                 side: Side::Outside,
             },
         ),
-        ("waves", CounterSurface::Waves { base: top + 0.1, first: 0.08, second: 0.1, period: 13.0 }),
+        ("waves", CounterSurface::Waves { base: top + 0.1, first: 0.08, second: 0.1, period: 13.0, origin: [0.0; 2] }),
     ]
 }
 

@@ -47,7 +47,7 @@ fn level(obstacle: &CounterSurface, y: Point) -> (f64, Point) {
             let slope = cross(across, axis).map(|x| 2.0 * inside(side) * x);
             (inside(side) * (radius * radius * dot(axis, axis) - dot(across, across)), slope)
         }
-        CounterSurface::Waves { base, first, second, period } => {
+        CounterSurface::Waves { base, first, second, period, .. } => {
             let angle = 2.0 * PI / period;
             let ((s1, c1), (s2, c2)) = ((angle * y[0]).sin_cos(), (angle * y[1]).sin_cos());
             (y[2] - base - first * s1 - second * c2, [-angle * first * c1, angle * second * s2, 1.0])

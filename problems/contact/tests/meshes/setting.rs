@@ -32,6 +32,7 @@ pub fn scene(mesh: Mesh, obstacle: CounterSurface, friction: f64) -> Scene {
             normal: NormalKind::Surface,
             area: AreaKind::Surface,
             friction,
+            interference: 0.0,
             friction_by_region: vec![],
         },
     }

@@ -38,7 +38,7 @@ fn sphere(penetration: f64) -> CounterSurface {
 }
 
 fn waves(penetration: f64) -> CounterSurface {
-    CounterSurface::Waves { base: 100.4 - penetration, first: 0.2, second: 0.2, period: 70.0 }
+    CounterSurface::Waves { base: 100.4 - penetration, first: 0.2, second: 0.2, period: 70.0, origin: [0.0; 2] }
 }
 
 fn refusal(scene: Scene) -> ContactError {

@@ -101,7 +101,7 @@ fn penetrations_and_distances() -> Vec<Case> {
         ContactCase::new(scene).check(uniform(1.0, 0.0)).case(GROUP, format!("initial penetration {label}"))
     };
     let wavy = |base: f64| {
-        let counter_surface = CounterSurface::Waves { base, first: 1.0, second: 2.0, period: 100.0 };
+        let counter_surface = CounterSurface::Waves { base, first: 1.0, second: 2.0, period: 100.0, origin: [0.0; 2] };
         ContactCase::new(block().map(|scene| Scene { counter_surface, ..scene }))
     };
     let mut cases: Vec<Case> = [("1 µm", 1e-3), ("1 mm", 1.0), ("half of the height", 5.0)].map(plane).into();

@@ -31,14 +31,16 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
         upper.top *= s;
     }
     scene.counter_surface = match scene.counter_surface {
-        CounterSurface::Waves { base, first, second, period } => {
-            CounterSurface::Waves { base: s * base, first: s * first, second: s * second, period: s * period }
+        CounterSurface::Waves { base, first, second, period, origin } => {
+            let origin = origin.map(|x| s * x);
+            CounterSurface::Waves { base: s * base, first: s * first, second: s * second, period: s * period, origin }
         }
         CounterSurface::Sphere { apex, radius, centre } => {
             CounterSurface::Sphere { apex: s * apex, radius: s * radius, centre: centre.map(|x| s * x) }
         }
-        CounterSurface::Punch { height, half_width, relief } => {
-            CounterSurface::Punch { height: s * height, half_width: s * half_width, relief: s * relief }
+        CounterSurface::Punch { height, half_width, relief, centre } => {
+            let [height, half_width, relief, centre] = [height, half_width, relief, centre].map(|x| s * x);
+            CounterSurface::Punch { height, half_width, relief, centre }
         }
         CounterSurface::Plane { height } => CounterSurface::Plane { height: s * height },
         CounterSurface::Grid(grid) => CounterSurface::Grid(grid.scaled(s)),

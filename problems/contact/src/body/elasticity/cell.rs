@@ -1,5 +1,6 @@
 //! The nodes of one cell of either kind, and what the kernels make of them.
 
+use crate::body::elasticity::packed::lower_start;
 use crate::body::elasticity::stress::{StressedPoint, SymmetricTensor, stress_at, von_mises_at};
 use crate::body::elasticity::{GaussPoint, Material, hex8, stiffness, tet10};
 use crate::scalar::Scalar;
@@ -186,6 +187,34 @@ impl CellNodes<f64> {
             let (by_displacement, by_position) = (found.by_displacement.to_vec(), found.by_position.to_vec());
             PointStress { stress: found.stress, by_displacement, by_position }
         })
+    }
+
+    /// The largest σ_vM over the integration points, MPa, and where it is, mm.
+    pub fn largest_von_mises(&self, shear_modulus: f64, u: &[f64]) -> (f64, [f64; 3]) {
+        let values = |point: usize| match self {
+            Self::Hex8(_) => hex8::values(point).to_vec(),
+            Self::Tet10(_) => tet10::values(point).to_vec(),
+        };
+        let place = |point: usize| -> [f64; 3] {
+            let shares = values(point);
+            std::array::from_fn(|axis| shares.iter().zip(self.positions()).map(|(share, x)| share * x[axis]).sum())
+        };
+        let stresses = self.point_stresses(shear_modulus, u);
+        let largest = (0..stresses.len()).max_by(|a, b| stresses[*a].total_cmp(&stresses[*b])).unwrap_or(0);
+        (stresses[largest], place(largest))
+    }
+
+    /// K u of the nodes, N; three entries per node.
+    pub fn forces(&self, material: &Material, u: &[f64]) -> Vec<f64> {
+        let (stiffness, mut forces) = (self.stiffness(material), vec![0.0; u.len()]);
+        for row in 0..u.len() {
+            for column in 0..=row {
+                let entry = stiffness[lower_start(row) + column];
+                forces[row] += entry * u[column];
+                forces[column] += if column == row { 0.0 } else { entry * u[row] };
+            }
+        }
+        forces
     }
 
     /// Von Mises stress at the centre and volume, with their derivatives.

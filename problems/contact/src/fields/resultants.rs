@@ -1,0 +1,166 @@
+//! Resultants of the forces on the bodies of a solved shape, reactions of their supports, and the largest stress.
+//!
+//! ```text
+//! r = K u − f − c per node, half of a tied node's r on each of its ends;     c: contact forces λ_N n + λ_T, by sides
+//! reaction of a support = Σ (d·r) d over the held directions d of its nodes;     Σ f + Σ c + Σ reactions = 0
+//! ```
+//! Of several supports that hold a direction of a node, the first one takes its reaction. All follows from the
+//! displacements of whole bodies and from the contact forces, whatever solver found them.
+
+use crate::body::Body;
+use crate::body::loads::nodal_forces;
+use crate::equilibrium::{ContactForces, ContactProblem, ContactRows, SolvedBody};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Forces on all bodies, and the largest stress in them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Resultants {
+    /// The bodies, lower first.
+    pub bodies: Vec<BodyResultants>,
+    /// The largest stress; none where no body is known to this process.
+    pub largest_stress: Option<LargestStress>,
+}
+
+/// Resultants of the forces on one body, along x₁, x₂, x₃.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BodyResultants {
+    /// The body.
+    pub body: String,
+    /// Of all loads, N.
+    pub loads: [f64; 3],
+    /// Of the contact forces on the body, N.
+    pub contact: [f64; 3],
+    /// Reactions of its supports, in the order of the scene.
+    pub supports: Vec<SupportReaction>,
+}
+
+/// What a support exerts on its body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SupportReaction {
+    /// The face that the support holds.
+    pub face: String,
+    /// Force on the body along x₁, x₂, x₃, N.
+    pub force: [f64; 3],
+}
+
+/// The largest von Mises stress over the integration points of all cells.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LargestStress {
+    /// Number of the body, lower first.
+    pub body: usize,
+    /// Number of the cell in its mesh.
+    pub cell: usize,
+    /// The integration point at the undeformed shape, mm.
+    pub place: [f64; 3],
+    /// The stress, MPa.
+    pub value: f64,
+}
+
+impl BodyResultants {
+    /// Loads, contact forces and reactions together, N: zero up to the accuracy of the state.
+    pub fn imbalance(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        let forces = [self.loads, self.contact].into_iter().chain(self.supports.iter().map(|support| support.force));
+        forces.for_each(|force| add(&mut sum, 1.0, force));
+        sum
+    }
+}
+
+impl Resultants {
+    /// The forces on solved bodies (lower first) with their contact rows and contact forces.
+    pub fn new(problem: &ContactProblem, bodies: &[SolvedBody], contact: (&ContactRows, &ContactForces)) -> Self {
+        let of_body = |(number, solved): (usize, &SolvedBody)| of_body(problem, number, solved, contact);
+        let largest_stress = LargestStress::of(problem, bodies);
+        Self { bodies: bodies.iter().enumerate().map(of_body).collect(), largest_stress }
+    }
+}
+
+impl LargestStress {
+    /// The largest stress in solved bodies, lower first; none without bodies.
+    pub fn of(problem: &ContactProblem, bodies: &[SolvedBody]) -> Option<Self> {
+        let of_body = |(number, (solved, body)): (usize, (&SolvedBody, &Body))| {
+            let of_cell = |cell: usize| {
+                let nodes = solved.mesh.cell_nodes(cell, &solved.positions);
+                let u = solved.mesh.cell_values(cell, &solved.displacement);
+                let (value, place) = nodes.largest_von_mises(body.solid.material(cell).shear_modulus(), &u);
+                Self { body: number, cell, place, value }
+            };
+            (0..solved.mesh.cell_count()).into_par_iter().map(of_cell).collect::<Vec<_>>()
+        };
+        let cells = bodies.iter().zip(&*problem.bodies).enumerate().flat_map(of_body);
+        // The first one of equal stresses.
+        cells.reduce(|largest, other| if other.value > largest.value { other } else { largest })
+    }
+}
+
+/// The forces on one body.
+fn of_body(
+    problem: &ContactProblem,
+    number: usize,
+    solved: &SolvedBody,
+    contact: (&ContactRows, &ContactForces),
+) -> BodyResultants {
+    let body = &problem.bodies[number];
+    let mut rest = internal_forces(body, solved);
+    let (mut loads, mut contacts) = ([0.0; 3], [0.0; 3]);
+    for (node, force) in nodal_forces(body, &solved.positions) {
+        add(&mut loads, 1.0, force);
+        add(&mut rest[node as usize], -1.0, force);
+    }
+    for (node, force) in contact_forces(problem, number, contact) {
+        add(&mut contacts, 1.0, force);
+        add(&mut rest[node as usize], -1.0, force);
+    }
+    for node in 0..rest.len() {
+        for end in body.solid.ends_of(node as u32).into_iter().flatten() {
+            let tied = rest[node];
+            add(&mut rest[end as usize], 0.5, tied);
+        }
+    }
+    let supports = problem.scene.bodies().nth(number).map(|(_, scene)| scene.supports.as_slice()).unwrap_or_default();
+    let reaction = |face: &String| SupportReaction { face: face.clone(), force: [0.0; 3] };
+    let mut supports: Vec<SupportReaction> = supports.iter().map(|support| reaction(&support.face)).collect();
+    for node in body.held_nodes() {
+        for (direction, support) in body.held_by(node) {
+            let share = (0..3).map(|axis| direction[axis] * rest[node as usize][axis]).sum();
+            add(&mut supports[support].force, share, direction);
+        }
+    }
+    BodyResultants { body: body.name.clone(), loads, contact: contacts, supports }
+}
+
+/// K u per node, N.
+fn internal_forces(body: &Body, solved: &SolvedBody) -> Vec<[f64; 3]> {
+    let of_cell = |cell: usize| {
+        let u = solved.mesh.cell_values(cell, &solved.displacement);
+        solved.mesh.cell_nodes(cell, &solved.positions).forces(body.solid.material(cell), &u)
+    };
+    let cells: Vec<Vec<f64>> = (0..solved.mesh.cell_count()).into_par_iter().map(of_cell).collect();
+    let mut sums = vec![[0.0; 3]; solved.mesh.node_count()];
+    for (cell, forces) in solved.mesh.cells().zip(&cells) {
+        for (&node, force) in cell.nodes.iter().zip(forces.as_chunks::<3>().0) {
+            add(&mut sums[node as usize], 1.0, *force);
+        }
+    }
+    sums
+}
+
+/// Contact forces on the nodes of a body, N.
+fn contact_forces<'a>(
+    problem: &'a ContactProblem,
+    number: usize,
+    (rows, forces): (&'a ContactRows, &'a ContactForces),
+) -> impl Iterator<Item = (u32, [f64; 3])> + 'a {
+    let points = problem.boundary.points.iter().zip(&rows.nodes).enumerate();
+    points.flat_map(move |(index, (point, node))| {
+        let tangential = forces.tangential.get(index).copied().unwrap_or_default();
+        let force: [f64; 3] = std::array::from_fn(|axis| forces.normal[index] * node.normal[axis] + tangential[axis]);
+        let sides = point.sides.iter().filter(move |side| side.body == number);
+        sides.map(move |side| (side.node, force.map(|force| -side.weight * force)))
+    })
+}
+
+fn add(sum: &mut [f64; 3], factor: f64, vector: [f64; 3]) {
+    (0..3).for_each(|axis| sum[axis] += factor * vector[axis]);
+}
