@@ -64,8 +64,8 @@ impl DirectSolver {
         let axes = &self.patterns[0].axes;
         forces.iter_mut().for_each(|forces| axes.free_forces(forces));
         let columns = Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof]);
-        let mut loads = vec![contact.bodies[0].body.condensed.condense_loads(columns)];
-        let sizes = contact.bodies[1..].iter().map(|body| body.body.free.len());
+        let mut loads = vec![contact.bodies[0].stiff().condensed.condense_loads(columns)];
+        let sizes = contact.bodies[1..].iter().map(|body| body.load.free.len());
         loads.extend(sizes.map(|size| Mat::zeros(size, velocities.count())));
         let turned = !problem.geometry.is_fixed();
         let u = if turned { contact_values(contact, &state.contact_displacements()) } else { Vec::new() };
@@ -94,7 +94,7 @@ fn contact_values(contact: &CompliantContact, displacements: &[Vec<f64>]) -> Vec
     let value = |point: &crate::equilibrium::ContactPoint| {
         let mut sum = [0.0; 3];
         for side in &point.sides {
-            let pattern = &contact.bodies[side.body].body.condensed.pattern;
+            let pattern = &contact.bodies[side.body].stiff().condensed.pattern;
             let place = places[side.body];
             places[side.body] += 1;
             let own = &displacements[side.body][3 * place..];
@@ -120,7 +120,7 @@ fn add_turned_forces(
         let force: [f64; 3] =
             std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>());
         for side in &point.sides {
-            let pattern = &contact.bodies[side.body].body.condensed.pattern;
+            let pattern = &contact.bodies[side.body].stiff().condensed.pattern;
             let place = places[side.body];
             places[side.body] += 1;
             let turned = pattern.axes.turn_at(pattern.contact[place], force);
@@ -136,10 +136,10 @@ impl DirectState {
     fn contact_displacements(&self) -> Vec<Vec<f64>> {
         let mut rest = self.solution.displacement.as_slice();
         let of_body = |body: &crate::direct::compliant_body::ContactBody| {
-            let (own, others) = rest.split_at(body.body.free.len());
+            let (own, others) = rest.split_at(body.load.free.len());
             rest = others;
-            let pattern = &body.body.condensed.pattern;
-            let mut u = pattern.contact_part(&pattern.lift);
+            let pattern = &body.stiff().condensed.pattern;
+            let mut u = pattern.contact_part(&body.load.lift);
             add_scaled(&mut u, 1.0, own);
             u
         };
