@@ -80,6 +80,7 @@ pub mod scene;
 #[cfg(feature = "schema")]
 mod schema;
 pub mod shape;
+mod shelf;
 pub mod solvers;
 pub mod standstill;
 pub mod tfeti;

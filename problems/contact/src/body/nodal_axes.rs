@@ -8,7 +8,7 @@ use crate::body::{Body, Piece};
 use crate::linear::symmetric::LowerPattern;
 
 /// The coordinates of the nodes of a piece.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct NodalAxes {
     /// Whether supports hold a dof in these coordinates.
     pub held: Vec<bool>,

@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub type Ends = [u32; 2];
 
 /// A mesh with materials and tied nodes.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Solid {
     /// The mesh; positions of a shape are given apart from it.
     pub mesh: Arc<Mesh>,

@@ -8,13 +8,14 @@
 use crate::body::{Body, Place};
 use crate::direct::condensation::CondensedBody;
 use crate::equilibrium::modes::{OwnMotion, RigidScene};
-use crate::equilibrium::{ContactBoundary, ContactRows};
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::{add_scaled, dot, norm};
+use crate::shelf::Factored;
 use faer::Mat;
 use std::sync::Arc;
 
-/// A condensed body with its compliance.
+/// A condensed body with its compliance, without loads.
 #[derive(Debug)]
 pub struct CompliantBody {
     pub(super) condensed: CondensedBody,
@@ -22,7 +23,20 @@ pub struct CompliantBody {
     pub(super) compliance: Mat<f64>,
     /// N: orthonormal contact displacements of the free motions.
     pub(super) motions: Vec<Vec<f64>>,
-    /// Displacement of the contact dofs under the loads alone, C f, mm.
+    /// The coefficients of these motions.
+    coefficients: Vec<OwnMotion>,
+}
+
+/// What loads and prescribed displacements do to a compliant body.
+#[derive(Debug)]
+pub struct BodyLoad {
+    /// u_D, mm: what supports prescribe at held dofs of the whole body, 0 at free ones.
+    pub(super) lift: Vec<f64>,
+    /// The loads over the whole body less K u_D, N; 0 at held dofs.
+    pub(super) full: Vec<f64>,
+    /// f̂_c, the same condensed onto the contact dofs, N.
+    pub(super) contact: Vec<f64>,
+    /// Displacement of the contact dofs under them alone, C f̂, mm.
     pub(super) free: Vec<f64>,
 }
 
@@ -33,20 +47,16 @@ pub struct BodyRows(Vec<Vec<(usize, f64)>>);
 /// A body of a shape with its share in the jumps.
 #[derive(Debug)]
 pub struct ContactBody {
-    pub(super) body: Arc<CompliantBody>,
+    pub(super) body: Arc<Factored<CompliantBody>>,
+    pub(super) load: Arc<BodyLoad>,
     pub(super) rows: BodyRows,
 }
 
 impl CompliantBody {
-    /// The compliance of a condensed body; the body at its positions is number `number` of a rigid scene. The condensed
-    /// load takes over the resultants of the loads, of which condensation keeps fewer digits.
-    pub fn new(mut condensed: CondensedBody, rigid: &RigidScene, number: usize, positions: &[[f64; 3]]) -> Self {
-        let motions = orthonormal(contact_motions(&condensed, rigid, number, positions));
-        for (motion, resultant) in &motions {
-            let lost = resultant - dot(motion, &condensed.load);
-            add_scaled(&mut condensed.load, lost, motion);
-        }
-        let motions: Vec<Vec<f64>> = motions.into_iter().map(|(motion, _)| motion).collect();
+    /// The compliance of a condensed body; the body at its positions is number `number` of a rigid scene.
+    pub fn new(condensed: CondensedBody, rigid: &RigidScene, number: usize, positions: &[[f64; 3]]) -> Self {
+        let (motions, coefficients): (Vec<Vec<f64>>, Vec<OwnMotion>) =
+            orthonormal(contact_motions(&condensed, rigid, number, positions)).into_iter().unzip();
         let schur = &condensed.schur;
         let size = schur.nrows();
         let scale = (0..size).map(|dof| schur[(dof, dof)]).sum::<f64>() / size as f64;
@@ -62,13 +72,22 @@ impl CompliantBody {
                 add_scaled(compliance.col_as_slice_mut(j), -right / scale, motion);
             }
         }
-        let free = multiply(&compliance, &condensed.load);
-        Self { condensed, compliance, motions, free }
+        Self { condensed, compliance, motions, coefficients }
     }
 
-    /// Nᵀf of the loads, N.
-    pub(super) fn resultants(&self) -> impl Iterator<Item = f64> + '_ {
-        self.motions.iter().map(|motion| dot(motion, &self.condensed.load))
+    /// The loads of a body at its positions: number `number` of a rigid scene. The condensed load takes over the
+    /// resultants of the loads, of which condensation keeps fewer digits.
+    pub fn loaded(&self, body: &Body, rigid: &RigidScene, number: usize, positions: &[[f64; 3]]) -> BodyLoad {
+        let pattern = &self.condensed.pattern;
+        let lift = pattern.lift(body);
+        let full = pattern.loads(body, positions, &lift);
+        let condensed = self.condensed.condense_loads(Mat::from_fn(full.len(), 1, |dof, _| full[dof]));
+        let mut contact = condensed.col_as_slice(0).to_vec();
+        for (motion, coefficients) in self.motions.iter().zip(&self.coefficients) {
+            let lost = rigid.resultant(number, coefficients) - dot(motion, &contact);
+            add_scaled(&mut contact, lost, motion);
+        }
+        BodyLoad { free: multiply(&self.compliance, &contact), lift, full, contact }
     }
 }
 
@@ -127,19 +146,29 @@ impl BodyRows {
 }
 
 impl ContactBody {
+    /// The body without loads.
+    pub(super) fn stiff(&self) -> &CompliantBody {
+        &self.body.factors
+    }
+
+    /// Nᵀf of the loads, N.
+    pub(super) fn resultants(&self) -> impl Iterator<Item = f64> + '_ {
+        self.stiff().motions.iter().map(|motion| dot(motion, &self.load.contact))
+    }
+
     /// Forces on the contact dofs, N, of packed multipliers.
     pub(super) fn contact_forces(&self, multipliers: &[f64]) -> Vec<f64> {
-        self.rows.forces(multipliers, self.body.free.len())
+        self.rows.forces(multipliers, self.load.free.len())
     }
 
     /// Displacements of the contact dofs, mm, under packed multipliers and with given amplitudes of the free motions;
     /// with or without the loads.
     pub(super) fn displacement(&self, multipliers: &[f64], amplitudes: &[f64], loaded: bool) -> Vec<f64> {
-        let mut u = multiply(&self.body.compliance, &self.contact_forces(multipliers));
+        let mut u = multiply(&self.stiff().compliance, &self.contact_forces(multipliers));
         if loaded {
-            add_scaled(&mut u, 1.0, &self.body.free);
+            add_scaled(&mut u, 1.0, &self.load.free);
         }
-        for (motion, amplitude) in self.body.motions.iter().zip(amplitudes) {
+        for (motion, amplitude) in self.stiff().motions.iter().zip(amplitudes) {
             add_scaled(&mut u, *amplitude, motion);
         }
         u
@@ -148,7 +177,7 @@ impl ContactBody {
     /// Displacements of the whole body along the axes under a load over it (0 at held dofs), from those of its contact
     /// dofs and packed multipliers.
     pub(super) fn extend_under(&self, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
-        let condensed = &self.body.condensed;
+        let condensed = &self.stiff().condensed;
         let mut u = condensed.extend(contact, &self.contact_forces(multipliers), load);
         condensed.pattern.axes.turn_back(&mut u);
         u
@@ -157,29 +186,32 @@ impl ContactBody {
     /// |Nᵀ(f − Bᵀλ)|₂: the resultants that the forces leave along the free motions, N.
     pub(super) fn imbalance(&self, multipliers: &[f64]) -> f64 {
         let mut force = self.contact_forces(multipliers);
-        add_scaled(&mut force, 1.0, &self.body.condensed.load);
-        norm(&self.body.motions.iter().map(|motion| dot(motion, &force)).collect::<Vec<f64>>())
+        add_scaled(&mut force, 1.0, &self.load.contact);
+        norm(&self.stiff().motions.iter().map(|motion| dot(motion, &force)).collect::<Vec<f64>>())
     }
 
     /// C r̂ for packed multipliers, over the contact dofs, mm: how far one step of refinement moves them.
     pub(super) fn refinement(&self, body: &Body, positions: &[[f64; 3]], multipliers: &[f64]) -> Vec<f64> {
-        let (forces, condensed) = (self.contact_forces(multipliers), &self.body.condensed);
-        let displacement = self.displacement(multipliers, &vec![0.0; self.body.motions.len()], true);
-        let u = condensed.extend(&displacement, &forces, &condensed.full_load);
-        let rest = condensed.pattern.unbalanced(body, positions, &u, condensed.full_force(&forces));
-        multiply(&self.body.compliance, condensed.condense_loads(rest).col_as_slice(0))
+        let (forces, condensed) = (self.contact_forces(multipliers), &self.stiff().condensed);
+        let displacement = self.displacement(multipliers, &vec![0.0; self.stiff().motions.len()], true);
+        let u = condensed.extend(&displacement, &forces, &self.load.full);
+        let rest = condensed.pattern.unbalanced(body, positions, &u, condensed.full_force(&self.load.full, &forces));
+        multiply(&self.stiff().compliance, condensed.condense_loads(rest).col_as_slice(0))
     }
 }
 
-/// The free motions of a body over its contact dofs, 0 at held ones, with the resultants of the loads.
+/// A free motion over the contact dofs, 0 at held ones, with its coefficients.
+type ContactMotion = (Vec<f64>, OwnMotion);
+
+/// The free motions of a body.
 fn contact_motions(
     condensed: &CondensedBody,
     rigid: &RigidScene,
     number: usize,
     positions: &[[f64; 3]],
-) -> Vec<(Vec<f64>, f64)> {
+) -> Vec<ContactMotion> {
     let pattern = &condensed.pattern;
-    let motion = |OwnMotion { coefficients, resultant }: OwnMotion| {
+    let motion = |coefficients: OwnMotion| {
         let at = |&place: &usize| {
             let point = positions[pattern.piece.nodes[place] as usize];
             pattern.axes.turn_at(place, rigid.displacement(number, &coefficients, Place::Point(point)))
@@ -187,27 +219,45 @@ fn contact_motions(
         let mut values: Vec<f64> = pattern.contact.iter().flat_map(at).collect();
         let dofs = values.iter_mut().enumerate().filter(|(dof, _)| pattern.holds(*dof));
         dofs.for_each(|(_, value)| *value = 0.0);
-        (values, resultant)
+        (values, coefficients)
     };
     rigid.own_motions(number).into_iter().map(motion).collect()
 }
 
-/// Orthonormal motions with their resultants.
-fn orthonormal(motions: Vec<(Vec<f64>, f64)>) -> Vec<(Vec<f64>, f64)> {
-    let mut basis: Vec<(Vec<f64>, f64)> = Vec::new();
-    for (mut motion, mut resultant) in motions {
+/// Orthonormal motions over the contact dofs.
+fn orthonormal(motions: Vec<ContactMotion>) -> Vec<ContactMotion> {
+    let mut basis: Vec<ContactMotion> = Vec::new();
+    for (mut motion, mut coefficients) in motions {
         // Twice, since once leaves rounding in the older directions.
         for _pass in 0..2 {
             for (older, of_older) in &basis {
                 let share = dot(older, &motion);
                 add_scaled(&mut motion, -share, older);
-                resultant -= share * of_older;
+                add_scaled(&mut coefficients, -share, of_older);
             }
             let length = norm(&motion);
-            motion.iter_mut().for_each(|value| *value /= length);
-            resultant /= length;
+            motion.iter_mut().chain(&mut coefficients).for_each(|value| *value /= length);
         }
-        basis.push((motion, resultant));
+        basis.push((motion, coefficients));
     }
     basis
+}
+
+/// Mean normal stiffness of the contact nodes, bodies in series, N/mm.
+pub(super) fn contact_stiffness(boundary: &ContactBoundary, bodies: &[ContactBody]) -> f64 {
+    let of_body = |body: &ContactBody, row: usize| {
+        let entries = body.rows.row(row);
+        let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
+        let schur = &body.stiff().condensed.schur;
+        let product = entries.iter().flat_map(|(i, a)| entries.iter().map(move |(j, b)| a * b * schur[(*i, *j)]));
+        (square > 0.0).then(|| product.sum::<f64>() / square)
+    };
+    let series = |point: &ContactPoint| {
+        let own: Vec<f64> = bodies.iter().filter_map(|body| of_body(body, point.start)).collect();
+        match own[..] {
+            [only] => only,
+            _ => 1.0 / own.iter().map(|stiffness| 1.0 / stiffness).sum::<f64>(),
+        }
+    };
+    boundary.points.iter().map(series).sum::<f64>() / boundary.points.len() as f64
 }

@@ -62,9 +62,9 @@ impl CompliantContact {
         let count = boundary.row_count;
         let mut compliance = Mat::<f64>::zeros(count, count);
         let mut constant = rows.prescribed_approaches(boundary);
-        for ContactBody { body, rows } in &bodies {
-            rows.add_compliance(&body.compliance, &mut compliance);
-            rows.add_jumps(&body.free, 1.0, &mut constant);
+        for ContactBody { body, load, rows } in &bodies {
+            rows.add_compliance(&body.factors.compliance, &mut compliance);
+            rows.add_jumps(&load.free, 1.0, &mut constant);
         }
         let normals = boundary.points.iter().map(|point| compliance[(point.start, point.start)]);
         let unit = normals.sum::<f64>() / boundary.points.len() as f64;
@@ -73,7 +73,7 @@ impl CompliantContact {
         }
         constant.iter_mut().for_each(|d| *d /= unit * load);
         let [motions, basis, inverse_basis] = touched_motions(&bodies, count);
-        let own: Vec<f64> = bodies.iter().flat_map(|body| body.body.resultants()).collect();
+        let own: Vec<f64> = bodies.iter().flat_map(ContactBody::resultants).collect();
         let resultant = (basis.transpose() * DVector::from_vec(own) / load).iter().copied().collect();
         let motions = Mat::from_fn(count, motions.ncols(), |i, k| motions[(i, k)]);
         let offset = vec![0.0; motions.ncols()];
@@ -146,7 +146,7 @@ impl CompliantContact {
         let scaled = DVector::from_iterator(amplitudes.len(), amplitudes.iter().map(|a| a * unit));
         let own = &self.basis * scaled;
         let mut own = own.iter().copied();
-        self.bodies.iter().map(|body| own.by_ref().take(body.body.motions.len()).collect()).collect()
+        self.bodies.iter().map(|body| own.by_ref().take(body.stiff().motions.len()).collect()).collect()
     }
 
     /// Resultants along R of those along the bodies' own motions.
@@ -171,11 +171,12 @@ impl CompliantContact {
         let mut forces = vec![0.0; self.row_count()];
         let mut own = Vec::new();
         let mut first = 0;
-        for ContactBody { body, rows } in &self.bodies {
-            let u = &displacements[first..first + body.condensed.load.len()];
+        for ContactBody { body, load, rows } in &self.bodies {
+            let (body, load) = (&body.factors, &load.contact);
+            let u = &displacements[first..first + load.len()];
             first += u.len();
             own.extend(body.motions.iter().map(|motion| dot(motion, u) / (self.unit * self.load)));
-            let mut reaction = body.condensed.load.clone();
+            let mut reaction = load.clone();
             add_scaled(&mut reaction, -1.0, &multiply(&body.condensed.schur, u));
             for (row, force) in forces.iter_mut().enumerate() {
                 let entries = rows.row(row);
@@ -195,9 +196,9 @@ impl CompliantContact {
 /// R with orthonormal columns, the map from its amplitudes to those of the bodies' own motions, and the map back.
 /// Singular values come from the triangular factor, which keeps the small ones.
 fn touched_motions(bodies: &[ContactBody], rows: usize) -> [DMatrix<f64>; 3] {
-    let columns = bodies.iter().map(|body| body.body.motions.len()).sum();
+    let columns = bodies.iter().map(|body| body.stiff().motions.len()).sum();
     let mut motions = DMatrix::<f64>::zeros(rows, columns);
-    let own = bodies.iter().flat_map(|body| body.body.motions.iter().map(move |motion| (&body.rows, motion)));
+    let own = bodies.iter().flat_map(|body| body.stiff().motions.iter().map(move |motion| (&body.rows, motion)));
     for (mut column, (rows, motion)) in motions.column_iter_mut().zip(own) {
         rows.add_jumps(motion, 1.0, column.as_mut_slice());
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f̂_c = (S + σ I) x_c with (K + σ I_c) x = f
-//! prescribed u_D:     u = u_D + v,  v = 0 at held dofs,  K v = (f − K u_D) − Bᵀλ;   f and displacements below: of v
+//! prescribed u_D:     u = u_D + v,  v = 0 at held dofs,  K v = (f − K u_D) − Bᵀλ;   forces and displacements: of v
 //! ```
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly. All is
 //! computed in the coordinates of [`NodalAxes`].
@@ -26,20 +26,15 @@ pub struct CondensationPattern {
     symbolic: Arc<SymbolicFactor>,
     /// The contact nodes by their places in the piece.
     pub(super) contact: Vec<usize>,
-    /// u_D, mm: what supports prescribe at held dofs, 0 at free ones.
-    pub(super) lift: Vec<f64>,
 }
 
+/// A condensed body without loads.
 #[derive(Debug)]
 pub struct CondensedBody {
     pub(super) pattern: Arc<CondensationPattern>,
     /// S over contact dofs 3·node + component, N/mm.
     pub(crate) schur: Mat<f64>,
-    /// f̂_c, the loads condensed onto the contact dofs, N.
-    pub(crate) load: Vec<f64>,
     pub(super) factor: NumericFactor,
-    /// The loads over the whole body less K u_D, N; 0 at held dofs.
-    pub(super) full_load: Vec<f64>,
     pub(super) shift: f64,
 }
 
@@ -52,8 +47,7 @@ impl CondensationPattern {
         let piece = body.whole();
         let contact: Vec<usize> = contact.iter().filter_map(|&node| piece.local(node)).collect();
         let symbolic = piece.pattern.symbolic(&contact)?;
-        let axes = NodalAxes::new(body, &piece);
-        Ok(Self { lift: axes.lift(body, &piece), axes, piece, symbolic, contact })
+        Ok(Self { axes: NodalAxes::new(body, &piece), piece, symbolic, contact })
     }
 
     /// Condenses one shape.
@@ -62,9 +56,6 @@ impl CondensationPattern {
     /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite.
     pub fn condense(self: &Arc<Self>, body: &Body, positions: &[[f64; 3]]) -> Result<CondensedBody, ContactError> {
         let mut values = self.stiffness(body, positions);
-        let mut full_load = piece_loads(body, &self.piece, positions);
-        self.axes.turn(&mut full_load);
-        let full_load = self.balance(&values, &self.lift, full_load);
         let shift = self.impose(&mut values);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
@@ -81,13 +72,22 @@ impl CondensationPattern {
             1.0,
             Par::Seq,
         );
-        let mut solution = full_load.clone();
-        factor.solve_in_place(&mut solution);
-        let load = multiply(&schur, &self.contact_part(&solution));
         for dof in 0..size {
             schur[(dof, dof)] -= shift;
         }
-        Ok(CondensedBody { pattern: Arc::clone(self), schur, load, factor, full_load, shift })
+        Ok(CondensedBody { pattern: Arc::clone(self), schur, factor, shift })
+    }
+
+    /// u_D, mm: what supports prescribe at held dofs, 0 at free ones.
+    pub(super) fn lift(&self, body: &Body) -> Vec<f64> {
+        self.axes.lift(body, &self.piece)
+    }
+
+    /// f − K u_D over the whole body, N, for its loads f and prescribed displacements u_D; 0 at held dofs.
+    pub(super) fn loads(&self, body: &Body, positions: &[[f64; 3]], lift: &[f64]) -> Vec<f64> {
+        let mut load = piece_loads(body, &self.piece, positions);
+        self.axes.turn(&mut load);
+        self.balance(|| self.stiffness(body, positions), lift, load)
     }
 
     /// K in the coordinates of the nodes.
@@ -119,15 +119,15 @@ impl CondensationPattern {
     /// f − K v, N, for displacements v and forces f in the coordinates of the nodes; 0 at held dofs, which supports
     /// carry.
     pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], v: &[f64], force: Vec<f64>) -> Mat<f64> {
-        let rest = self.balance(&self.stiffness(body, positions), v, force);
+        let rest = self.balance(|| self.stiffness(body, positions), v, force);
         Mat::from_fn(rest.len(), 1, |dof, _| rest[dof])
     }
 
     /// f − K v for the values of K; 0 at held dofs.
-    fn balance(&self, stiffness: &[f64], v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
+    fn balance(&self, stiffness: impl FnOnce() -> Vec<f64>, v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
         if v.iter().any(|entry| *entry != 0.0) {
             let mut image = vec![0.0; v.len()];
-            self.piece.pattern.lower.multiply(stiffness, v, &mut image);
+            self.piece.pattern.lower.multiply(&stiffness(), v, &mut image);
             add_scaled(&mut force, -1.0, &image);
         }
         force.iter_mut().zip(&self.axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
@@ -156,7 +156,7 @@ impl CondensedBody {
     /// What forces on the whole body, N, 0 at held dofs, one column per load case, put on the contact dofs, N.
     pub fn condense_loads(&self, mut forces: Mat<f64>) -> Mat<f64> {
         self.factor.solve_columns_in_place(&mut forces);
-        let mut loads = Mat::<f64>::zeros(self.load.len(), forces.ncols());
+        let mut loads = Mat::<f64>::zeros(self.schur.nrows(), forces.ncols());
         for column in 0..forces.ncols() {
             let contact = self.pattern.contact_part(forces.col_as_slice(column));
             let mut load = multiply(&self.schur, &contact);
@@ -179,9 +179,9 @@ impl CondensedBody {
         u
     }
 
-    /// The loads and forces on the contact dofs, N, over the whole body.
-    pub(super) fn full_force(&self, forces: &[f64]) -> Vec<f64> {
-        let mut full = self.full_load.clone();
+    /// Loads over the whole body and forces on the contact dofs, N, together.
+    pub(super) fn full_force(&self, load: &[f64], forces: &[f64]) -> Vec<f64> {
+        let mut full = load.to_vec();
         for (&node, force) in self.pattern.contact.iter().zip(forces.chunks_exact(3)) {
             add_scaled(&mut full[3 * node..3 * node + 3], 1.0, force);
         }

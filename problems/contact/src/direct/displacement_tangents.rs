@@ -27,7 +27,7 @@ pub(super) fn displacement_tangents(
     let mut displacements = vec![Vec::new(); count];
     let mut forces = Some(forces);
     for (number, body) in contact.bodies.iter().enumerate() {
-        let pattern = &body.body.condensed.pattern;
+        let pattern = &body.stiff().condensed.pattern;
         // The lower body alone changes its shape.
         let mut right = forces.take().unwrap_or_else(|| Mat::zeros(pattern.piece.dof_count(), count));
         for column in 0..count {
@@ -38,11 +38,11 @@ pub(super) fn displacement_tangents(
             let right = right.col_as_slice_mut(column);
             for (index, &node) in pattern.contact.iter().enumerate() {
                 for dof in 3 * index..3 * index + 3 {
-                    right[3 * node + dof % 3] += turned[dof] + held[dof] + body.body.condensed.shift * u[dof];
+                    right[3 * node + dof % 3] += turned[dof] + held[dof] + body.stiff().condensed.shift * u[dof];
                 }
             }
         }
-        body.body.condensed.factor.solve_columns_in_place(&mut right);
+        body.stiff().condensed.factor.solve_columns_in_place(&mut right);
         for (column, all) in displacements.iter_mut().enumerate() {
             let u = right.col_as_slice_mut(column);
             pattern.axes.turn_back(u);
@@ -55,8 +55,8 @@ pub(super) fn displacement_tangents(
 /// u_c′ of a body, mm, from forces of the change of the shape and of λ′ on its contact dofs, N, and amplitudes, mm.
 fn contact_change(body: &ContactBody, loads: &[f64], held: &[f64], amplitudes: &[f64]) -> Vec<f64> {
     let forces: Vec<f64> = loads.iter().zip(held).map(|(load, held)| load + held).collect();
-    let mut u = multiply(&body.body.compliance, &forces);
-    for (motion, amplitude) in body.body.motions.iter().zip(amplitudes) {
+    let mut u = multiply(&body.stiff().compliance, &forces);
+    for (motion, amplitude) in body.stiff().motions.iter().zip(amplitudes) {
         add_scaled(&mut u, *amplitude, motion);
     }
     u

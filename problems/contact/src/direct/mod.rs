@@ -9,6 +9,7 @@ mod adjoint;
 mod compliant_body;
 mod compliant_contact;
 mod condensation;
+mod condensation_key;
 mod cone_programs;
 mod continuation;
 mod diagnosis;
@@ -25,6 +26,7 @@ mod tangents;
 
 pub use compliant_contact::CompliantContact;
 pub use condensation::CondensationPattern;
+pub use condensation_key::CondensedShelf;
 pub use cone_programs::by_cone_programs;
 #[cfg(feature = "interior-point")]
 pub use resistance::resistance;

@@ -30,14 +30,13 @@ impl DirectState {
     /// first asked for, and kept: fields, adjoint and tangents need the same ones.
     pub(super) fn displacement(&self, number: usize) -> &[f64] {
         self.displacements[number].get_or_init(|| {
-            let sizes = self.contact.bodies.iter().map(|body| body.body.free.len());
+            let sizes = self.contact.bodies.iter().map(|body| body.load.free.len());
             let first: usize = sizes.take(number).sum();
             let body = &self.contact.bodies[number];
-            let contact = &self.solution.displacement[first..first + body.body.free.len()];
-            let condensed = &body.body.condensed;
-            let mut u = body.extend_under(contact, &self.solution.forces, &condensed.full_load);
-            let mut lift = condensed.pattern.lift.clone();
-            condensed.pattern.axes.turn_back(&mut lift);
+            let contact = &self.solution.displacement[first..first + body.load.free.len()];
+            let mut u = body.extend_under(contact, &self.solution.forces, &body.load.full);
+            let mut lift = body.load.lift.clone();
+            body.stiff().condensed.pattern.axes.turn_back(&mut lift);
             add_scaled(&mut u, 1.0, &lift);
             u
         })

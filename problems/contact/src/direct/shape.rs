@@ -66,7 +66,7 @@ impl DirectSolver {
         let (problem, contact) = (&self.problem, &state.contact);
         let of_column = |column| contact.rows.changes(&problem.boundary, velocities, column);
         let changes: Vec<Vec<RowChange>> = (0..velocities.count()).map(of_column).collect();
-        let sizes = contact.bodies.iter().map(|body| body.body.free.len());
+        let sizes = contact.bodies.iter().map(|body| body.load.free.len());
         let mut turned: Vec<Mat<f64>> = sizes.map(|size| Mat::zeros(size, velocities.count())).collect();
         let turns = !problem.geometry.is_fixed();
         let u = if turns { contact_values(contact, &state.contact_displacements()) } else { Vec::new() };
@@ -86,7 +86,7 @@ impl DirectSolver {
             }
         }
         let mut on_contact = turned.clone();
-        on_contact[0] += contact.bodies[0].body.condensed.condense_loads(forces);
+        on_contact[0] += contact.bodies[0].stiff().condensed.condense_loads(forces);
         ShapeLoads { contact: on_contact, turned, approaches }
     }
 }
@@ -97,7 +97,7 @@ fn contact_values(contact: &CompliantContact, displacements: &[Vec<f64>]) -> Vec
     let value = |point: &crate::equilibrium::ContactPoint| {
         let mut sum = [0.0; 3];
         for side in &point.sides {
-            let pattern = &contact.bodies[side.body].body.condensed.pattern;
+            let pattern = &contact.bodies[side.body].stiff().condensed.pattern;
             let place = places[side.body];
             places[side.body] += 1;
             let own = &displacements[side.body][3 * place..];
@@ -123,7 +123,7 @@ fn add_turned_forces(
         let force: [f64; 3] =
             std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>());
         for side in &point.sides {
-            let pattern = &contact.bodies[side.body].body.condensed.pattern;
+            let pattern = &contact.bodies[side.body].stiff().condensed.pattern;
             let place = places[side.body];
             places[side.body] += 1;
             let turned = pattern.axes.turn_at(pattern.contact[place], force);
@@ -139,10 +139,10 @@ impl DirectState {
     fn contact_displacements(&self) -> Vec<Vec<f64>> {
         let mut rest = self.solution.displacement.as_slice();
         let of_body = |body: &crate::direct::compliant_body::ContactBody| {
-            let (own, others) = rest.split_at(body.body.free.len());
+            let (own, others) = rest.split_at(body.load.free.len());
             rest = others;
-            let pattern = &body.body.condensed.pattern;
-            let mut u = pattern.contact_part(&pattern.lift);
+            let pattern = &body.stiff().condensed.pattern;
+            let mut u = pattern.contact_part(&body.load.lift);
             add_scaled(&mut u, 1.0, own);
             u
         };

@@ -1,9 +1,10 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
 use crate::direct::adjoint::adjoint;
-use crate::direct::compliant_body::{BodyRows, CompliantBody, ContactBody};
+use crate::direct::compliant_body::{BodyLoad, BodyRows, CompliantBody, ContactBody, contact_stiffness};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::CondensationPattern;
+use crate::direct::condensation_key::{CondensationKey, CondensedShelf};
 use crate::direct::continuation::Reached;
 use crate::direct::continuation::equilibrium;
 use crate::direct::diagnosis::{diagnose, estimate_contraction};
@@ -15,12 +16,12 @@ use crate::direct::tangents::{CondensedTangents, tangents};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
-    Configuration, ContactBoundary, ContactForces, ContactPoint, ContactProblem, ContactSolver, ContactState,
-    ContactWarmStart, Diagnosis, Kink, Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents,
-    TangentsOf, ValueError, Work,
+    Configuration, ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
+    Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
+use crate::shelf::Factored;
 use crate::solvers::SolverKind;
 use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
 use nonsmooth::interruption::interrupted;
@@ -39,9 +40,15 @@ const BY_PROGRAMS: &str =
 pub struct DirectSolver {
     pub(crate) problem: Arc<ContactProblem>,
     pub(super) patterns: Vec<Arc<CondensationPattern>>,
+    /// What the factors of the bodies depend on beside positions.
+    keys: Vec<Arc<CondensationKey>>,
+    shelf: Arc<CondensedShelf>,
     /// The bodies of fixed shape.
-    fixed: OnceLock<Vec<Arc<CompliantBody>>>,
+    fixed: OnceLock<Vec<CondensedPart>>,
 }
+
+/// A body of a shape without its rows.
+type CondensedPart = (Arc<Factored<CompliantBody>>, Arc<BodyLoad>);
 
 /// A solved shape with all that its coderivative needs.
 #[derive(Debug)]
@@ -72,13 +79,26 @@ impl DirectSolver {
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(problem: Arc<ContactProblem>) -> Result<Self, ContactError> {
+        Self::sharing(problem, Arc::default())
+    }
+
+    /// As [`DirectSolver::new`], with factors that solvers on one shelf share.
+    ///
+    /// # Errors
+    /// As [`DirectSolver::new`].
+    pub fn sharing(problem: Arc<ContactProblem>, shelf: Arc<CondensedShelf>) -> Result<Self, ContactError> {
         let pattern = |(number, body)| {
             let sides = problem.boundary.points.iter().flat_map(|point| &point.sides);
             let contact: Vec<u32> = sides.filter(|side| side.body == number).map(|side| side.node).collect();
             Ok(Arc::new(CondensationPattern::new(body, &contact)?))
         };
-        let patterns = problem.bodies.iter().enumerate().map(pattern).collect::<Result<_, ContactError>>()?;
-        Ok(Self { problem, patterns, fixed: OnceLock::new() })
+        let patterns = problem.bodies.iter().enumerate().map(pattern);
+        let patterns = patterns.collect::<Result<Vec<Arc<CondensationPattern>>, ContactError>>()?;
+        let key = |(number, pattern): (usize, &Arc<CondensationPattern>)| {
+            Arc::new(CondensationKey::new(Arc::clone(&problem.bodies), number, Arc::clone(pattern)))
+        };
+        let keys = patterns.iter().enumerate().map(key).collect();
+        Ok(Self { problem, patterns, keys, shelf, fixed: OnceLock::new() })
     }
 
     /// The contact problem in the forces of given controls: the data of the state, for other methods.
@@ -89,6 +109,30 @@ impl DirectSolver {
         Ok(self.condense(Configuration::new(&self.problem, controls)?)?.0)
     }
 
+    /// A body of a shape, and whether it has been factored for it or taken from the shelf.
+    fn condense_body(
+        &self,
+        number: usize,
+        configuration: &Configuration,
+    ) -> Result<(CondensedPart, bool), ContactError> {
+        let (body, key) = (&self.problem.bodies[number], &self.keys[number]);
+        let (positions, rigid) = (&configuration.positions[number], &configuration.rigid);
+        let known = self.shelf.find(key, positions);
+        let is_new = known.is_none();
+        let factored = match known {
+            Some(known) => known,
+            None => {
+                let condensed = self.patterns[number].condense(body, positions)?;
+                let factors = CompliantBody::new(condensed, rigid, number, positions);
+                let factored = Arc::new(Factored { positions: Arc::clone(positions), factors });
+                self.shelf.put(key, &factored);
+                factored
+            }
+        };
+        let load = Arc::new(factored.factors.loaded(body, rigid, number, positions));
+        Ok(((factored, load), is_new))
+    }
+
     /// Condenses all bodies of a shape; also the positions of its nodes, the load (zero at rest) and the number of
     /// factorisations.
     fn condense(
@@ -96,25 +140,22 @@ impl DirectSolver {
         configuration: Configuration,
     ) -> Result<(CompliantContact, Positions, f64, usize), ContactError> {
         Stage::Factorization.enter()?;
-        let condense = |number: usize| -> Result<Arc<CompliantBody>, ContactError> {
-            let positions = &configuration.positions[number];
-            let condensed = self.patterns[number].condense(&self.problem.bodies[number], positions)?;
-            Ok(Arc::new(CompliantBody::new(condensed, &configuration.rigid, number, positions)))
-        };
-        let lower = condense(0)?;
-        let mut factorizations = 1;
+        let (lower, is_new) = self.condense_body(0, &configuration)?;
+        let mut factorizations = usize::from(is_new);
         if self.fixed.get().is_none() {
             // These bodies keep their shape: they are factored at the first call and shared afterwards.
-            let bodies = (1..self.patterns.len()).map(condense).collect::<Result<Vec<_>, _>>()?;
-            factorizations += bodies.len();
+            let bodies = (1..self.patterns.len()).map(|number| self.condense_body(number, &configuration));
+            let (bodies, new): (Vec<CondensedPart>, Vec<bool>) =
+                bodies.collect::<Result<Vec<_>, ContactError>>()?.into_iter().unzip();
+            factorizations += new.into_iter().filter(|is_new| *is_new).count();
             // Another thread may have been first; its factors are the same.
             let _ = self.fixed.set(bodies);
         }
         let bodies = std::iter::once(lower).chain(self.fixed.get().into_iter().flatten().cloned()).enumerate();
         let boundary = &self.problem.boundary;
-        let with_rows = |(number, body): (usize, Arc<CompliantBody>)| {
-            let rows = BodyRows::new(number, &body.condensed, boundary, &configuration.rows);
-            ContactBody { body, rows }
+        let with_rows = |(number, (body, load)): (usize, CondensedPart)| {
+            let rows = BodyRows::new(number, &body.factors.condensed, boundary, &configuration.rows);
+            ContactBody { body, load, rows }
         };
         let bodies: Vec<ContactBody> = bodies.map(with_rows).collect();
         let load = configuration.load(contact_stiffness(boundary, &bodies));
@@ -170,7 +211,7 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(CondensedSolution, Work, usize), ContactError> {
-        let size: usize = contact.bodies.iter().map(|body| body.body.free.len()).sum();
+        let size: usize = contact.bodies.iter().map(|body| body.load.free.len()).sum();
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let reached = equilibrium(contact, start.as_deref(), tolerance, max_steps);
@@ -349,7 +390,7 @@ impl DirectSolver {
             for (node, force) in own.as_chunks::<3>().0.iter().enumerate() {
                 piece.add_force(&body.solid, node as u32, *force, &mut load);
             }
-            CondensedLoad::new(&state.contact.bodies[number].body, load, state.displacement(number))
+            CondensedLoad::new(state.contact.bodies[number].stiff(), load, state.displacement(number))
         };
         (0..self.patterns.len()).map(load).collect()
     }
@@ -412,23 +453,4 @@ fn refusal(contact: &CompliantContact) -> Option<ContactError> {
 #[cfg(not(feature = "interior-point"))]
 fn refusal(_contact: &CompliantContact) -> Option<ContactError> {
     None
-}
-
-/// Mean normal stiffness of the contact nodes, bodies in series, N/mm.
-fn contact_stiffness(boundary: &ContactBoundary, bodies: &[ContactBody]) -> f64 {
-    let of_body = |body: &ContactBody, row: usize| {
-        let entries = body.rows.row(row);
-        let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
-        let schur = &body.body.condensed.schur;
-        let product = entries.iter().flat_map(|(i, a)| entries.iter().map(move |(j, b)| a * b * schur[(*i, *j)]));
-        (square > 0.0).then(|| product.sum::<f64>() / square)
-    };
-    let series = |point: &ContactPoint| {
-        let own: Vec<f64> = bodies.iter().filter_map(|body| of_body(body, point.start)).collect();
-        match own[..] {
-            [only] => only,
-            _ => 1.0 / own.iter().map(|stiffness| 1.0 / stiffness).sum::<f64>(),
-        }
-    };
-    boundary.points.iter().map(series).sum::<f64>() / boundary.points.len() as f64
 }

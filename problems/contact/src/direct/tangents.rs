@@ -98,10 +98,10 @@ fn driving(
 ) -> (Vec<f64>, Vec<f64>) {
     let mut constant = approach.to_vec();
     let mut own = Vec::new();
-    for (ContactBody { body, rows }, loads) in contact.bodies.iter().zip(contact_loads) {
+    for (ContactBody { body, rows, .. }, loads) in contact.bodies.iter().zip(contact_loads) {
         let forces = loads.col_as_slice(column);
-        rows.add_jumps(&multiply(&body.compliance, forces), 1.0, &mut constant);
-        own.extend(body.motions.iter().map(|motion| dot(motion, forces) / contact.load));
+        rows.add_jumps(&multiply(&body.factors.compliance, forces), 1.0, &mut constant);
+        own.extend(body.factors.motions.iter().map(|motion| dot(motion, forces) / contact.load));
     }
     constant.iter_mut().for_each(|d| *d /= contact.unit * contact.load);
     (constant, contact.resultants_of(&DVector::from_vec(own)))

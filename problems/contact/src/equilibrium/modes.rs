@@ -75,14 +75,8 @@ pub struct RigidScene {
     pub frames: Vec<Frame>,
 }
 
-/// A motion that the supports of one body leave free.
-#[derive(Debug, Clone)]
-pub struct OwnMotion {
-    /// The six coefficients of the motion.
-    pub coefficients: [f64; MOTIONS],
-    /// Resultant of the loads of the body along it, N.
-    pub resultant: f64,
-}
+/// A motion of one body: six coefficients.
+pub type OwnMotion = [f64; MOTIONS];
 
 /// A motion of all bodies: six coefficients per body.
 pub type Motion = Vec<f64>;
@@ -112,27 +106,32 @@ impl RigidScene {
         arm.iter().any(|part| part.abs() > ARM_ROUNDING * self.frames[body].length)
     }
 
-    /// The motions that supports and tied nodes of one body leave free.
+    /// The motions that supports and tied nodes of one body leave free, orthonormal.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
-        let row = |point, force: [f64; 3]| {
-            let works = self.frames[body]
-                .motions(Place::Point(point))
-                .map(|m| (0..3).map(|axis| m[axis] * force[axis]).sum::<f64>());
-            DVector::from_row_slice(&works)
-        };
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
-        let mut rows: Vec<DVector<f64>> = held.map(|&(_, point, direction)| row(point, direction)).collect();
+        let work = |&(_, point, direction): &RowPart| DVector::from_row_slice(&self.works(body, point, direction));
+        let mut rows: Vec<DVector<f64>> = held.map(work).collect();
         for (_, arm) in self.arms.iter().filter(|(own, arm)| *own == body && self.counts(body, arm)) {
             let motions = self.frames[body].motions(Place::Arm(*arm));
             rows.extend((0..3).map(|axis| DVector::from_iterator(MOTIONS, motions.iter().map(|motion| motion[axis]))));
         }
         let free = kernel(&rows, MOTIONS);
-        let along = |motion: &DVector<f64>| {
-            let loads = self.loads.iter().filter(|(loaded, ..)| *loaded == body);
-            let resultant = loads.map(|&(_, point, force)| row(point, force).dot(motion)).sum();
-            OwnMotion { coefficients: std::array::from_fn(|mode| motion[mode]), resultant }
+        free.iter().map(|motion| std::array::from_fn(|mode| motion[mode])).collect()
+    }
+
+    /// The work of a force on the six motions of a body.
+    fn works(&self, body: usize, point: [f64; 3], force: [f64; 3]) -> [f64; MOTIONS] {
+        let motions = self.frames[body].motions(Place::Point(point));
+        motions.map(|motion| (0..3).map(|axis| motion[axis] * force[axis]).sum())
+    }
+
+    /// Resultant of the loads of a body along one of its motions, N.
+    pub(crate) fn resultant(&self, body: usize, motion: &OwnMotion) -> f64 {
+        let loads = self.loads.iter().filter(|(loaded, ..)| *loaded == body);
+        let along = |&(_, point, force): &RowPart| -> f64 {
+            self.works(body, point, force).iter().zip(motion).map(|(work, share)| work * share).sum()
         };
-        free.iter().map(along).collect()
+        loads.map(along).sum()
     }
 
     /// Displacement of a place of a body in one of its motions.

@@ -71,6 +71,6 @@ impl ContactProblem {
 /// Whether a motion along one coefficient is a sum of free motions, which are orthonormal.
 fn is_free(motions: &[OwnMotion], coefficient: usize) -> bool {
     debug_assert!(coefficient < MOTIONS);
-    let inside: f64 = motions.iter().map(|motion| motion.coefficients[coefficient].powi(2)).sum();
+    let inside: f64 = motions.iter().map(|motion| motion[coefficient].powi(2)).sum();
     1.0 - inside <= FREE
 }

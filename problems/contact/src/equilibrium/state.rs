@@ -27,7 +27,8 @@ pub struct Work {
     pub dual_operator_applications: usize,
     /// Of these, products spent on the adjoint.
     pub adjoint_applications: usize,
-    /// Numeric factorisations of stiffness matrices (subdomains, interiors, bodies).
+    /// Numeric factorisations of stiffness matrices (subdomains, interiors, bodies); none for factors that another
+    /// solver of the same [`Processes`](crate::solvers::Processes) held.
     pub factorizations: usize,
     /// Dense factorisations on condensed bodies: one per Newton step, one per iteration of a cone program.
     pub dense_factorizations: usize,

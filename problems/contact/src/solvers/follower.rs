@@ -7,6 +7,7 @@ use crate::solvers::announcement::{Announcement, Id, Shape, Task};
 use crate::solvers::leader::{prepared, use_threads};
 use crate::solvers::own_solver::OwnSolver;
 use crate::solvers::own_state::OwnState;
+use crate::solvers::shared_factors::SharedFactors;
 use crate::solvers::traffic::Counted;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,6 +18,7 @@ struct Follower {
     counted: Arc<Counted>,
     solvers: BTreeMap<Id, OwnSolver>,
     states: BTreeMap<Id, OwnState>,
+    factors: SharedFactors,
 }
 
 /// Does what the first process announces until the run has ended. It prints nothing, and reads and writes no file.
@@ -26,7 +28,7 @@ struct Follower {
 pub fn follow(communication: &Arc<dyn Communication>) -> Result<(), String> {
     let [counted, announcing] = Counted::pair(communication);
     let (solvers, states) = (BTreeMap::new(), BTreeMap::new());
-    let mut follower = Follower { announcing, counted, solvers, states };
+    let mut follower = Follower { announcing, counted, solvers, states, factors: SharedFactors::default() };
     loop {
         let Announcement { task, released } = Announcement::hear(&*follower.announcing)?;
         for id in released {
@@ -46,7 +48,7 @@ impl Follower {
         match task {
             Task::Threads(threads) => use_threads(threads),
             Task::Prepare(id, plan) => {
-                let solver = prepared(*plan, Arc::<Counted>::clone(&self.counted));
+                let solver = prepared(*plan, Arc::<Counted>::clone(&self.counted), &self.factors);
                 self.agree(solver.as_ref().err());
                 self.solvers.extend(solver.ok().map(|solver| (id, solver)));
             }

@@ -6,6 +6,7 @@ use crate::error::{ContactError, SceneError};
 use crate::memory;
 use crate::solvers::announcement::{Announcement, Id, Task};
 use crate::solvers::own_solver::OwnSolver;
+use crate::solvers::shared_factors::SharedFactors;
 use crate::solvers::traffic::{Counted, Usage};
 use crate::solvers::{SolverKind, SolverPlan};
 use crate::tfeti::TornOptions;
@@ -107,11 +108,11 @@ impl Leader {
     ///
     /// # Errors
     /// As [`prepared`]; [`SceneError::OtherProcess`] if it fails in another process only.
-    pub fn prepare(&self, plan: SolverPlan) -> Result<(OwnSolver, Id), SceneError> {
+    pub fn prepare(&self, plan: SolverPlan, factors: &SharedFactors) -> Result<(OwnSolver, Id), SceneError> {
         let id = self.name();
         let (own, other) = self
             .announced(Task::Prepare(id, Box::new(plan.clone())), |_| {
-                let own = prepared(plan, self.connection());
+                let own = prepared(plan, self.connection(), factors);
                 let other = self.agree(own.as_ref().err().map(ToString::to_string));
                 (own, other)
             })
@@ -149,19 +150,24 @@ impl Leader {
 }
 
 /// The solver of a plan in this process. Where there are several processes, all of them prepare it: total FETI shares
-/// the subdomains among them, direct condensation is repeated by each.
+/// the subdomains among them, direct condensation is repeated by each. `factors`: those of the solvers of this process.
 ///
 /// # Errors
 /// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do not
 /// make, or a size whose symbolic analysis fails.
-pub fn prepared(plan: SolverPlan, communication: Arc<dyn Communication>) -> Result<OwnSolver, SceneError> {
+pub fn prepared(
+    plan: SolverPlan,
+    communication: Arc<dyn Communication>,
+    factors: &SharedFactors,
+) -> Result<OwnSolver, SceneError> {
     plan.scene.validate()?;
     memory::check(&plan, &*communication)?;
     let problem = Arc::new(ContactProblem::new(plan.scene.clone())?);
     plan.check(&problem, communication.size())?;
     let SolverPlan { kind, preconditioner, wanted, clusters, .. } = plan;
-    let options = TornOptions { preconditioner, clusters, communication };
-    OwnSolver::new(problem, kind, options, wanted).map_err(|error| match error {
+    let options = TornOptions { preconditioner, clusters, communication, shelf: Arc::clone(&factors.torn) };
+    let condensed = Arc::clone(&factors.condensed);
+    OwnSolver::new(problem, kind, (options, condensed), wanted).map_err(|error| match error {
         ContactError::Clusters { reason, .. } => {
             let allowed = format!("clusters that are held together: {reason}");
             SceneError::out_of_range("solver.clusters", clusters.unwrap_or_default(), allowed)

@@ -19,6 +19,7 @@ mod own_solver;
 mod own_state;
 mod plan;
 mod processes;
+mod shared_factors;
 mod traffic;
 
 pub use any_solver::{AnySolver, AnyState};

@@ -6,7 +6,7 @@
 //! shape similar to one that needed it) and where Jacobians are wanted that cost less there. Sizes and counted work
 //! alone decide, so that a resumed run repeats the choice. Bodies too large to be condensed leave total FETI alone.
 
-use crate::direct::{DirectSolver, DirectState};
+use crate::direct::{CondensedShelf, DirectSolver, DirectState};
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
     Sensitivities, SolvedBody, Tangents, TangentsOf,
@@ -36,6 +36,7 @@ const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
 pub struct OwnSolver {
     problem: Arc<ContactProblem>,
     options: TornOptions,
+    condensed: Arc<CondensedShelf>,
     torn: OnceLock<TotalFeti>,
     direct: OnceLock<DirectSolver>,
     order: Order,
@@ -84,26 +85,28 @@ impl From<TotalFeti> for OwnSolver {
     fn from(solver: TotalFeti) -> Self {
         let (problem, order) = (Arc::clone(&solver.model().problem), Order::Torn(DualMethod::default()));
         let options = TornOptions::default();
-        Self { problem, options, torn: OnceLock::from(solver), direct: OnceLock::new(), order }
+        Self { problem, options, condensed: Arc::default(), torn: solver.into(), direct: OnceLock::new(), order }
     }
 }
 
 impl From<DirectSolver> for OwnSolver {
     fn from(solver: DirectSolver) -> Self {
         let (problem, options) = (Arc::clone(&solver.problem), TornOptions::default());
-        Self { problem, options, torn: OnceLock::new(), direct: OnceLock::from(solver), order: Order::Direct }
+        let (condensed, order) = (Arc::default(), Order::Direct);
+        Self { problem, options, condensed, torn: OnceLock::new(), direct: solver.into(), order }
     }
 }
 
 impl OwnSolver {
-    /// Prepares the solver of a kind, or the one that comes first.
+    /// Prepares the solver of a kind, or the one that comes first; `condensed`: where solvers by direct condensation find
+    /// the factors of each other.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`].
     pub fn new(
         problem: Arc<ContactProblem>,
         kind: SolverKind,
-        options: TornOptions,
+        (options, condensed): (TornOptions, Arc<CondensedShelf>),
         wanted: Wanted,
     ) -> Result<Self, ContactError> {
         let order = match kind {
@@ -112,7 +115,7 @@ impl OwnSolver {
             SolverKind::AugmentedLagrangian => Order::Torn(DualMethod::SuccessiveApproximations),
             SolverKind::Direct => Order::Direct,
         };
-        let solver = Self { problem, options, torn: OnceLock::new(), direct: OnceLock::new(), order };
+        let solver = Self { problem, options, condensed, torn: OnceLock::new(), direct: OnceLock::new(), order };
         match solver.order {
             Order::Direct | Order::DirectFirst(..) => solver.direct().map(|_| ())?,
             Order::Torn(_) | Order::TornFirst(_) => solver.torn().map(|_| ())?,
@@ -133,7 +136,9 @@ impl OwnSolver {
     fn direct(&self) -> Result<&DirectSolver, ContactError> {
         match self.order {
             Order::Torn(_) => Err(ContactError::OtherSolver),
-            _ => prepared(&self.direct, || DirectSolver::new(Arc::clone(&self.problem))),
+            _ => {
+                prepared(&self.direct, || DirectSolver::sharing(Arc::clone(&self.problem), Arc::clone(&self.condensed)))
+            }
         }
     }
 

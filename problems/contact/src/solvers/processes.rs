@@ -4,24 +4,32 @@ use crate::communication::{Communication, InProcess};
 use crate::error::{ContactError, SceneError};
 use crate::solvers::announcement::Task;
 use crate::solvers::leader::{Leader, prepared, use_threads};
+use crate::solvers::shared_factors::SharedFactors;
 use crate::solvers::{AnySolver, SolverKind, SolverPlan, Usage};
 use std::sync::Arc;
 
 pub use crate::solvers::follower::follow;
 
-/// The processes of a run, for the one that runs the command.
+/// The processes of a run, for the one that runs the command. Solvers that come from one such value, or from copies of
+/// it, share factors: bodies of equal stiffness at equal positions are factored once, as long as a state or a solver
+/// holds their factors. Results are those of solvers of their own.
 #[derive(Debug, Clone)]
-pub struct Processes(Option<Arc<Leader>>);
+pub struct Processes {
+    /// None for a single process.
+    leader: Option<Arc<Leader>>,
+    /// The factors of this process; the others have their own.
+    factors: SharedFactors,
+}
 
 impl Processes {
     /// The connection of a single process.
     pub fn alone() -> Self {
-        Self(None)
+        Self { leader: None, factors: SharedFactors::default() }
     }
 
     /// Whether nothing but this process has been started, without MPI.
     pub fn is_alone(&self) -> bool {
-        self.0.is_none()
+        self.leader.is_none()
     }
 
     /// The solver of a plan, prepared in all processes: total FETI shares the subdomains among them, direct
@@ -32,10 +40,10 @@ impl Processes {
     /// not make, or a size whose symbolic analysis fails; [`SceneError::OtherProcess`] if the preparation fails in
     /// another process only.
     pub fn solver(&self, plan: SolverPlan) -> Result<AnySolver, SceneError> {
-        Ok(match &self.0 {
-            None => AnySolver::from(prepared(plan, Arc::new(InProcess))?),
+        Ok(match &self.leader {
+            None => AnySolver::from(prepared(plan, Arc::new(InProcess), &self.factors)?),
             Some(leader) => {
-                let (own, id) = leader.prepare(plan)?;
+                let (own, id) = leader.prepare(plan, &self.factors)?;
                 AnySolver::led(own, id, Arc::clone(leader))
             }
         })
@@ -47,7 +55,7 @@ impl Processes {
     /// [`ContactError::OtherProcess`] if the others cannot be told.
     pub fn use_threads(&self, threads: usize) -> Result<(), ContactError> {
         let own = || use_threads(threads);
-        match &self.0 {
+        match &self.leader {
             None => own(),
             Some(leader) => leader.together(Task::Threads(threads), own)?,
         }
@@ -59,14 +67,14 @@ impl Processes {
     /// # Errors
     /// [`ContactError::OtherProcess`] if the others cannot be asked.
     pub fn usage(&self, solver: SolverKind) -> Result<Option<Usage>, ContactError> {
-        self.0.as_ref().map(|leader| leader.measure(solver)).transpose()
+        self.leader.as_ref().map(|leader| leader.measure(solver)).transpose()
     }
 }
 
 /// Runs something in the first of several processes; the others [`follow`] it.
 pub fn lead<T>(communication: &Arc<dyn Communication>, run: impl FnOnce(&Processes) -> T) -> T {
     let leader = Arc::new(Leader::new(communication));
-    let result = run(&Processes(Some(Arc::clone(&leader))));
+    let result = run(&Processes { leader: Some(Arc::clone(&leader)), factors: SharedFactors::default() });
     leader.end();
     result
 }

@@ -28,4 +28,4 @@ pub use newton::Recycling;
 pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, solve_by_successive_approximations};
 pub use solver::{DualMethod, TotalFeti};
 pub use state::TornState;
-pub use torn::{PreconditionerKind, TornModel, TornOptions};
+pub use torn::{PreconditionerKind, TornModel, TornOptions, TornShelf};

@@ -96,7 +96,8 @@ fn tangents_are_those_of_differences_and_of_the_adjoint() {
             let solve = |controls: &Vector| shape.solve(controls, None, Accuracy::TIGHTEST).unwrap();
             let state = solve(&at);
             let changes: Vec<Vec<f64>> = [0, 14, 21].map(|column| unit(36, column)).to_vec();
-            let tangents = shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Contact, 0.0).unwrap();
+            let tangents =
+                shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Contact, 0.0).unwrap();
             let dual = seeded_direction(shape.problem().boundary.row_count, 100);
             let positions = shape.contact_solver().sensitivities(&state.solution, dual.as_slice(), 1e-12).unwrap();
             let by_adjoint = shape.problem().map.pull_back(&positions.positions);

@@ -21,4 +21,5 @@ mod rank;
 mod resultants;
 mod scene_structure;
 mod several_processes;
+mod shared_factors;
 mod successive_approximations;

@@ -58,7 +58,7 @@ impl CoarseSpace {
             rows.extend(block.map(|row| modes.coarse_row(row)).collect::<Vec<_>>());
         }
         rows.extend(modes.contact_rows());
-        let resultants: Vec<f64> = system.parts.iter().flat_map(|part| part.resultants.iter().copied()).collect();
+        let resultants: Vec<f64> = system.loads.iter().flat_map(|load| load.resultants.iter().copied()).collect();
         let resultants = distribution.gather(&system.cluster_resultants(resultants), MOTIONS);
         let (transposed, pattern) = (rows.of_clusters(distribution.owned()), Arc::clone(&model.coarse));
         let values = gram(&pattern, [&rows, &transposed], equality_count, distribution);

@@ -177,12 +177,12 @@ impl<'a> DualOperator<'a> {
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
         let parts = parts_mut(&mut torn.0, &self.system.starts).into_par_iter();
-        parts.zip(&self.system.parts).for_each(|(part, factors)| {
-            if !factors.loaded_displacement.is_empty() {
-                part.copy_from_slice(&factors.loaded_displacement);
+        parts.zip(&self.system.loads).for_each(|(part, load)| {
+            if !load.displacement.is_empty() {
+                part.copy_from_slice(&load.displacement);
             }
         });
-        let resultants: Vec<[f64; MOTIONS]> = self.system.parts.iter().map(|part| part.resultants).collect();
+        let resultants: Vec<[f64; MOTIONS]> = self.system.loads.iter().map(|load| load.resultants).collect();
         self.system.join(&self.model.constraints.joined, &resultants, &mut torn.0);
         torn
     }

@@ -7,7 +7,7 @@
 use crate::tfeti::torn::scene_rows::SparseRow;
 
 /// B_c of one cluster.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ClusterRows {
     pub count: usize,
     /// The parts of the rows by subdomain.
@@ -15,7 +15,7 @@ pub struct ClusterRows {
 }
 
 /// The part of B_c on one subdomain.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MemberRows {
     /// Dofs of the subdomain that have rows, ascending.
     pub dofs: Vec<usize>,

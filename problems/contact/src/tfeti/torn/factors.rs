@@ -63,7 +63,16 @@ impl InteriorClass {
     }
 }
 
-/// The matrices and rigid motions of one subdomain.
+/// What the loads of a subdomain do to it.
+#[derive(Debug, Clone)]
+pub struct SubdomainLoad {
+    /// K⁺ f, mm; empty for an unloaded subdomain.
+    pub displacement: Vec<f64>,
+    /// Resultants Rᵀ f along its rigid modes, N.
+    pub resultants: [f64; MOTIONS],
+}
+
+/// The matrices and rigid motions of one subdomain; they do not depend on loads.
 #[derive(Debug)]
 pub struct SubdomainFactors {
     /// Values of the stiffness matrix K over [`PiecePattern::lower`].
@@ -72,14 +81,10 @@ pub struct SubdomainFactors {
     compressible: Option<Vec<f64>>,
     /// Factor of K + ρNNᵀ.
     pub inverse: NumericFactor,
-    /// K⁺ times the load; empty for an unloaded subdomain.
-    pub loaded_displacement: Vec<f64>,
     /// Factor of the interior matrix of [`SubdomainFactors::boundary_stiffness`], if the preconditioner needs it.
     pub interior: Option<NumericFactor>,
     /// Orthonormal rigid modes, six columns.
     pub modes: Vec<Vec<f64>>,
-    /// Resultants Rᵀ f of the loads along them, N.
-    pub resultants: [f64; MOTIONS],
     /// |K⁺K x − x|/|x| modulo rigid motions for a probe x: the digits that the condition of K takes.
     pub forward_error: f64,
 }
@@ -93,7 +98,7 @@ const LOST_DIGITS: f64 = 1e-10;
 impl SubdomainFactors {
     /// Assembles and factors one subdomain: a piece of a body at given positions of its nodes.
     ///
-    /// `load`: consistent nodal loads; `interior`: class to factor for the Dirichlet preconditioner.
+    /// `interior`: class to factor for the Dirichlet preconditioner.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails.
@@ -101,7 +106,6 @@ impl SubdomainFactors {
         (body, piece): (&Body, &Piece),
         symbolic: &Arc<SymbolicFactor>,
         positions: &[[f64; 3]],
-        load: &[f64],
         interior: Option<&InteriorClass>,
     ) -> Result<Self, ContactError> {
         let pattern = &*piece.pattern;
@@ -111,7 +115,6 @@ impl SubdomainFactors {
         let compressible = is_near.then(|| piece.assemble(&body.solid, positions, near));
         let coordinates: Vec<Place> = piece.places(&body.solid, positions).collect();
         let modes = orthonormal_modes(&coordinates);
-        let resultants = std::array::from_fn(|mode| dot(&modes[mode], load));
         let regularised = regularise(pattern, &stiffness, &modes);
         let inverse = symbolic.factorize(&regularised)?;
         let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, &modes)?;
@@ -124,15 +127,17 @@ impl SubdomainFactors {
             }
             None => None,
         };
-        let loaded_displacement = Vec::new();
-        let mut factors =
-            Self { stiffness, compressible, inverse, loaded_displacement, interior, modes, resultants, forward_error };
-        if load.iter().any(|&force| force != 0.0) {
-            let mut displacement = load.to_vec();
-            factors.solve(&mut displacement);
-            factors.loaded_displacement = displacement;
+        Ok(Self { stiffness, compressible, inverse, interior, modes, forward_error })
+    }
+
+    /// What consistent nodal loads, N, do to the subdomain.
+    pub fn loaded(&self, mut load: Vec<f64>) -> SubdomainLoad {
+        let resultants = std::array::from_fn(|mode| dot(&self.modes[mode], &load));
+        match load.iter().any(|&force| force != 0.0) {
+            true => self.solve(&mut load),
+            false => load.clear(),
         }
-        Ok(factors)
+        SubdomainLoad { displacement: load, resultants }
     }
 
     /// The resultants Rᵀ x.

@@ -1,8 +1,7 @@
 //! The torn scene: what is fixed for a run, and the factored system of a shape. A process holds its subdomains only.
 
 use crate::body::MOTIONS;
-use crate::body::loads::piece_loads;
-use crate::body::{Body, Piece, Place};
+use crate::body::{Body, Piece};
 use crate::communication::Communication;
 use crate::equilibrium::{Configuration, ContactProblem, ContactRows};
 use crate::error::ContactError;
@@ -10,11 +9,14 @@ use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::linear::vector::{dot, norm};
-use crate::tfeti::torn::cluster_factors::{ClusterFactors, moves_as_one_body};
+use crate::shelf::Factored;
+use crate::tfeti::torn::cluster_factors::moves_as_one_body;
+use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::coarse_pattern::CoarsePattern;
 use crate::tfeti::torn::constraints::{Constraints, TornRows};
 use crate::tfeti::torn::distribution::Distribution;
-use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors};
+use crate::tfeti::torn::factored_body::{FactoredBody, OwnParts, TornKey, TornShelf};
+use crate::tfeti::torn::factors::{InteriorClass, SubdomainLoad};
 use crate::tfeti::torn::interface::Interface;
 use crate::tfeti::torn::numbering::Numbering;
 use crate::tfeti::torn::options::TornOptions;
@@ -32,8 +34,8 @@ pub struct TornSubdomain {
     /// The body, and its piece.
     pub body: usize,
     pub piece: usize,
-    symbolic: Arc<SymbolicFactor>,
-    interior: Option<Arc<InteriorClass>>,
+    pub(super) symbolic: Arc<SymbolicFactor>,
+    pub(super) interior: Option<Arc<InteriorClass>>,
 }
 
 /// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies of fixed shape.
@@ -52,25 +54,24 @@ pub struct TornModel {
     /// Which process works on which clusters of subdomains: what has rigid motions of its own.
     pub clusters: Arc<Distribution>,
     /// First subdomain of every cluster of this process, then their number.
-    cluster_starts: Arc<[usize]>,
+    pub(super) cluster_starts: Arc<[usize]>,
     /// What of B is the same for all shapes.
     pub constraints: Arc<Constraints>,
     /// Dofs that this process shares with others.
     pub interface: Interface,
     /// Pattern of the coarse matrices.
     pub coarse: Arc<CoarsePattern>,
-    /// Factors of the bodies of fixed shape.
-    fixed: OnceLock<Vec<FactoredBody>>,
+    /// What the factors of the bodies depend on beside positions.
+    pub(super) keys: Vec<Arc<TornKey>>,
+    pub(super) shelf: Arc<TornShelf>,
+    /// The bodies of fixed shape.
+    pub(super) fixed: OnceLock<Vec<LoadedBody>>,
     /// Rows of B where they are the same for all shapes.
     fixed_rows: OnceLock<Arc<TornRows>>,
 }
 
-/// The factors of the subdomains and clusters of a body in this process, by their places there.
-#[derive(Debug, Clone, Default)]
-struct FactoredBody {
-    parts: Vec<(usize, Arc<SubdomainFactors>)>,
-    clusters: Vec<(usize, Arc<ClusterFactors>)>,
-}
+/// A factored body with what the loads of its subdomains in this process do to them.
+pub(super) type LoadedBody = (Arc<Factored<FactoredBody>>, Vec<SubdomainLoad>);
 
 /// Work on a subdomain of a body of fixed shape relative to one of the lower body, whose shape changes: products alone,
 /// no factors and no sums for the derivative.
@@ -90,7 +91,7 @@ impl TornModel {
     /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`] for clusters whose
     /// subdomains the rows of B_c do not hold together.
     pub fn new(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
-        let TornOptions { preconditioner, clusters, communication } = options;
+        let TornOptions { preconditioner, clusters, communication, shelf } = options;
         let numbering = Numbering::new(&problem.bodies, clusters);
         let [clusters, distribution] = distributions(communication, &numbering, &problem.bodies);
         let rows = problem.rows(&problem.start_positions())?;
@@ -121,7 +122,7 @@ impl TornModel {
             Ok(TornSubdomain { body, piece, symbolic, interior })
         };
         let subdomains = distribution.agreed(own.clone().map(subdomain).collect())?;
-        Ok(Self {
+        let mut model = Self {
             problem,
             subdomains,
             starts,
@@ -132,9 +133,30 @@ impl TornModel {
             constraints: Arc::new(constraints),
             interface,
             coarse,
+            keys: Vec::new(),
+            shelf,
             fixed: OnceLock::new(),
             fixed_rows: OnceLock::new(),
-        })
+        };
+        model.keys = (0..model.problem.bodies.len()).map(|body| Arc::new(model.key(body))).collect();
+        Ok(model)
+    }
+
+    /// What the factors of a body depend on beside positions.
+    fn key(&self, body: usize) -> TornKey {
+        let subdomain = |(index, own): (usize, &TornSubdomain)| {
+            let touched = || self.constraints.touched[self.starts[index]..self.starts[index + 1]].to_vec();
+            (index, own.piece, own.interior.as_ref().map(|_| touched()))
+        };
+        let subdomains = self.subdomains.iter().enumerate().filter(|(_, own)| own.body == body);
+        let cluster = |(index, rows): (usize, &ClusterRows)| {
+            (index, self.cluster_starts[index]..self.cluster_starts[index + 1], rows.clone())
+        };
+        let joined = self.constraints.joined.iter().enumerate().filter(|_| self.numbering.is_joined());
+        let clusters = joined.filter(|(index, _)| self.subdomains[self.cluster_starts[*index]].body == body);
+        let own =
+            OwnParts { subdomains: subdomains.map(subdomain).collect(), clusters: clusters.map(cluster).collect() };
+        TornKey::new(Arc::clone(&self.problem.bodies), body, own)
     }
 
     /// Number of torn dofs of all processes.
@@ -153,90 +175,10 @@ impl TornModel {
         (&self.problem.bodies[*body], &self.problem.bodies[*body].pieces[*piece])
     }
 
-    /// Factors the subdomains of a shape. Bodies but the lower one keep their shape: they are factored at the first
-    /// call and shared afterwards. Factorisations are counted over all processes.
-    ///
-    /// # Errors
-    /// [`ContactError::Factorization`] from a subdomain.
-    pub fn factorize(&self, configuration: &Configuration) -> Result<TornSystem, ContactError> {
-        let lower = self.factorize_body(0, &configuration.positions[0])?;
-        let count = |body: &FactoredBody| body.parts.iter().map(|(_, part)| part.factorizations()).sum::<usize>();
-        let mut factored = count(&lower);
-        if self.fixed.get().is_none() {
-            let bodies =
-                (1..self.problem.bodies.len()).map(|body| self.factorize_body(body, &configuration.positions[body]));
-            let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
-            factored += bodies.iter().map(count).sum::<usize>();
-            // Another thread may have been first; its factors are the same.
-            let _ = self.fixed.set(bodies);
-        }
-        let bodies = || std::iter::once(&lower).chain(self.fixed.get().into_iter().flatten());
-        let mut parts: Vec<(usize, Arc<SubdomainFactors>)> = bodies().flat_map(|body| body.parts.clone()).collect();
-        parts.sort_by_key(|(index, _)| *index);
-        let mut clusters: Vec<(usize, Arc<ClusterFactors>)> = bodies().flat_map(|body| body.clusters.clone()).collect();
-        clusters.sort_by_key(|(index, _)| *index);
-        let factorizations = self.distribution.sum_of_processes(factored as f64) as usize;
-        let forward_error = parts.iter().map(|(_, part)| part.forward_error).fold(0.0, f64::max);
-        Ok(TornSystem {
-            parts: parts.into_iter().map(|(_, part)| part).collect(),
-            starts: Arc::clone(&self.starts),
-            rows: self.rows_of(&configuration.rows),
-            clusters: clusters.into_iter().map(|(_, cluster)| cluster).collect(),
-            cluster_starts: Arc::clone(&self.cluster_starts),
-            factorizations,
-            forward_error: self.distribution.largest(forward_error),
-        })
-    }
-
     /// B and B_D of a shape.
-    fn rows_of(&self, rows: &ContactRows) -> Arc<TornRows> {
+    pub(super) fn rows_of(&self, rows: &ContactRows) -> Arc<TornRows> {
         let build = || Arc::new(self.constraints.rows_of(rows, &self.interface, &self.distribution));
         if self.problem.geometry.is_fixed() { Arc::clone(self.fixed_rows.get_or_init(build)) } else { build() }
-    }
-
-    /// The factors of the subdomains and clusters of a body in this process.
-    fn factorize_body(&self, body: usize, positions: &[[f64; 3]]) -> Result<FactoredBody, ContactError> {
-        let factor = |(index, subdomain): (usize, &TornSubdomain)| {
-            let (body, piece) = self.piece(index);
-            let load = piece_loads(body, piece, positions);
-            let interior = subdomain.interior.as_deref();
-            let factors = SubdomainFactors::new((body, piece), &subdomain.symbolic, positions, &load, interior)?;
-            Ok((index, Arc::new(factors)))
-        };
-        let own = self.subdomains.par_iter().enumerate().filter(|(_, subdomain)| subdomain.body == body);
-        let parts: Result<Vec<(usize, Arc<SubdomainFactors>)>, ContactError> = own.map(factor).collect();
-        let factored =
-            parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, positions, &parts)?, parts }));
-        self.distribution.agreed(factored)
-    }
-
-    /// What joins the clusters of a body in this process, from its factored subdomains; nothing for single subdomains.
-    fn join_body(
-        &self,
-        body: usize,
-        positions: &[[f64; 3]],
-        parts: &[(usize, Arc<SubdomainFactors>)],
-    ) -> Result<Vec<(usize, Arc<ClusterFactors>)>, ContactError> {
-        if !self.numbering.is_joined() {
-            return Ok(vec![]);
-        }
-        let own = (0..self.cluster_starts.len() - 1).into_par_iter();
-        let own = own.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body);
-        let join = |cluster: usize| {
-            let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
-            let places = |index: usize| {
-                let (body, piece) = self.piece(index);
-                piece.places(&body.solid, positions).collect::<Vec<Place>>()
-            };
-            let coordinates: Vec<Vec<Place>> = members.clone().map(places).collect();
-            let first = parts.partition_point(|(index, _)| *index < members.start);
-            let parts: Vec<Arc<SubdomainFactors>> =
-                parts[first..first + members.len()].iter().map(|(_, part)| Arc::clone(part)).collect();
-            let stiffness = self.piece(members.start).1.pattern.mean_diagonal(&parts[0].stiffness);
-            let factors = ClusterFactors::new(&self.constraints.joined[cluster], &parts, &coordinates, stiffness)?;
-            Ok((cluster, Arc::new(factors)))
-        };
-        own.map(join).collect()
     }
 
     /// The class of a subdomain by its interior dofs: those without rows; none if the preconditioner needs none.

@@ -1,6 +1,7 @@
 //! What a torn model can be asked for.
 
 use crate::communication::{Communication, InProcess};
+use crate::tfeti::torn::factored_body::TornShelf;
 use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
 use std::sync::Arc;
 
@@ -15,10 +16,17 @@ pub struct TornOptions {
     pub clusters: Option<usize>,
     /// What connects the processes; each of them works on its own clusters.
     pub communication: Arc<dyn Communication>,
+    /// Where solvers of this process find the factors of each other.
+    pub shelf: Arc<TornShelf>,
 }
 
 impl Default for TornOptions {
     fn default() -> Self {
-        Self { preconditioner: PreconditionerKind::default(), clusters: None, communication: Arc::new(InProcess) }
+        Self {
+            preconditioner: PreconditionerKind::default(),
+            clusters: None,
+            communication: Arc::new(InProcess),
+            shelf: Arc::default(),
+        }
     }
 }

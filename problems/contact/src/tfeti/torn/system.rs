@@ -3,10 +3,12 @@
 use crate::body::MOTIONS;
 use crate::linear::entry::Entry;
 use crate::linear::right_side::RightSide;
+use crate::shelf::Factored;
 use crate::tfeti::torn::cluster_factors::ClusterFactors;
 use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::constraints::TornRows;
-use crate::tfeti::torn::factors::SubdomainFactors;
+use crate::tfeti::torn::factored_body::FactoredBody;
+use crate::tfeti::torn::factors::{SubdomainFactors, SubdomainLoad};
 use crate::tfeti::torn::vectors::parts_mut;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -17,6 +19,8 @@ use std::sync::Arc;
 pub struct TornSystem {
     /// The subdomains of this process, in their order.
     pub parts: Vec<Arc<SubdomainFactors>>,
+    /// What their loads do to them.
+    pub loads: Vec<SubdomainLoad>,
     /// First dof of every subdomain of this process in its torn vectors, then their number.
     pub starts: Arc<[usize]>,
     /// B and B_D.
@@ -25,6 +29,9 @@ pub struct TornSystem {
     pub(super) clusters: Vec<Arc<ClusterFactors>>,
     /// First subdomain of every cluster of this process, then their number.
     pub(super) cluster_starts: Arc<[usize]>,
+    /// The bodies that the subdomains and clusters belong to, for others to find.
+    #[expect(dead_code, reason = "what a system holds, other solvers find on their shelf")]
+    pub(super) bodies: Vec<Arc<Factored<FactoredBody>>>,
     /// Numeric factorisations done for this shape, by all processes.
     pub factorizations: usize,
     /// Largest [`SubdomainFactors::forward_error`] of all subdomains.

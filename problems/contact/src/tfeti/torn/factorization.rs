@@ -1,0 +1,126 @@
+//! Factorisation of the bodies of a torn scene at one shape.
+
+use crate::body::Place;
+use crate::body::loads::piece_loads;
+use crate::equilibrium::Configuration;
+use crate::error::ContactError;
+use crate::shelf::Factored;
+use crate::tfeti::torn::cluster_factors::ClusterFactors;
+use crate::tfeti::torn::factored_body::FactoredBody;
+use crate::tfeti::torn::factors::{SubdomainFactors, SubdomainLoad};
+use crate::tfeti::torn::model::{LoadedBody, TornModel, TornSubdomain};
+use crate::tfeti::torn::system::TornSystem;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+impl TornModel {
+    /// Factors the subdomains of a shape. Bodies but the lower one keep their shape: they are factored at the first
+    /// call and shared afterwards. What solvers on the same shelf still hold is taken over. Factorisations are counted
+    /// over all processes.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] from a subdomain.
+    pub fn factorize(&self, configuration: &Configuration) -> Result<TornSystem, ContactError> {
+        let (lower, mut factored) = self.loaded_body(0, &configuration.positions[0])?;
+        if self.fixed.get().is_none() {
+            let bodies =
+                (1..self.problem.bodies.len()).map(|body| self.loaded_body(body, &configuration.positions[body]));
+            let (bodies, counts): (Vec<LoadedBody>, Vec<usize>) =
+                bodies.collect::<Result<Vec<_>, ContactError>>()?.into_iter().unzip();
+            factored += counts.into_iter().sum::<usize>();
+            // Another thread may have been first; its factors are the same.
+            let _ = self.fixed.set(bodies);
+        }
+        let bodies = || std::iter::once(&lower).chain(self.fixed.get().into_iter().flatten());
+        let part = |((index, part), load): (&(usize, Arc<SubdomainFactors>), &SubdomainLoad)| {
+            (*index, Arc::clone(part), load.clone())
+        };
+        let mut parts: Vec<(usize, Arc<SubdomainFactors>, SubdomainLoad)> =
+            bodies().flat_map(|(body, loads)| body.factors.parts.iter().zip(loads)).map(part).collect();
+        parts.sort_by_key(|(index, ..)| *index);
+        let mut clusters: Vec<(usize, Arc<ClusterFactors>)> =
+            bodies().flat_map(|(body, _)| body.factors.clusters.clone()).collect();
+        clusters.sort_by_key(|(index, _)| *index);
+        let factorizations = self.distribution.sum_of_processes(factored as f64) as usize;
+        let forward_error = parts.iter().map(|(_, part, _)| part.forward_error).fold(0.0, f64::max);
+        let (parts, loads) = parts.into_iter().map(|(_, part, load)| (part, load)).unzip();
+        Ok(TornSystem {
+            parts,
+            loads,
+            bodies: bodies().map(|(body, _)| Arc::clone(body)).collect(),
+            starts: Arc::clone(&self.starts),
+            rows: self.rows_of(&configuration.rows),
+            clusters: clusters.into_iter().map(|(_, cluster)| cluster).collect(),
+            cluster_starts: Arc::clone(&self.cluster_starts),
+            factorizations,
+            forward_error: self.distribution.largest(forward_error),
+        })
+    }
+
+    /// A body at given positions, from the shelf or factored, and the number of factorisations that it took.
+    fn loaded_body(&self, body: usize, positions: &Arc<Vec<[f64; 3]>>) -> Result<(LoadedBody, usize), ContactError> {
+        let known = self.shelf.find(&self.keys[body], positions);
+        // Factorisation is the work of all processes: each takes over what it has only where all have it.
+        let missing = self.distribution.largest(f64::from(u8::from(known.is_none())));
+        let (factored, count) = match known.filter(|_| missing == 0.0) {
+            Some(known) => (known, 0),
+            None => {
+                let factors = self.factorize_body(body, positions)?;
+                let count = factors.factorizations();
+                let factored = Arc::new(Factored { positions: Arc::clone(positions), factors });
+                self.shelf.put(&self.keys[body], &factored);
+                (factored, count)
+            }
+        };
+        let load = |(index, part): &(usize, Arc<SubdomainFactors>)| {
+            let (body, piece) = self.piece(*index);
+            part.loaded(piece_loads(body, piece, positions))
+        };
+        let loads = factored.factors.parts.par_iter().map(load).collect();
+        Ok(((factored, loads), count))
+    }
+
+    /// The factors of the subdomains and clusters of a body in this process.
+    fn factorize_body(&self, body: usize, positions: &[[f64; 3]]) -> Result<FactoredBody, ContactError> {
+        let factor = |(index, subdomain): (usize, &TornSubdomain)| {
+            let (body, piece) = self.piece(index);
+            let interior = subdomain.interior.as_deref();
+            let factors = SubdomainFactors::new((body, piece), &subdomain.symbolic, positions, interior)?;
+            Ok((index, Arc::new(factors)))
+        };
+        let own = self.subdomains.par_iter().enumerate().filter(|(_, subdomain)| subdomain.body == body);
+        let parts: Result<Vec<(usize, Arc<SubdomainFactors>)>, ContactError> = own.map(factor).collect();
+        let factored =
+            parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, positions, &parts)?, parts }));
+        self.distribution.agreed(factored)
+    }
+
+    /// What joins the clusters of a body in this process, from its factored subdomains; nothing for single subdomains.
+    fn join_body(
+        &self,
+        body: usize,
+        positions: &[[f64; 3]],
+        parts: &[(usize, Arc<SubdomainFactors>)],
+    ) -> Result<Vec<(usize, Arc<ClusterFactors>)>, ContactError> {
+        if !self.numbering.is_joined() {
+            return Ok(vec![]);
+        }
+        let own = (0..self.cluster_starts.len() - 1).into_par_iter();
+        let own = own.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body);
+        let join = |cluster: usize| {
+            let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
+            let places = |index: usize| {
+                let (body, piece) = self.piece(index);
+                piece.places(&body.solid, positions).collect::<Vec<Place>>()
+            };
+            let coordinates: Vec<Vec<Place>> = members.clone().map(places).collect();
+            let first = parts.partition_point(|(index, _)| *index < members.start);
+            let parts: Vec<Arc<SubdomainFactors>> =
+                parts[first..first + members.len()].iter().map(|(_, part)| Arc::clone(part)).collect();
+            let stiffness = self.piece(members.start).1.pattern.mean_diagonal(&parts[0].stiffness);
+            let factors = ClusterFactors::new(&self.constraints.joined[cluster], &parts, &coordinates, stiffness)?;
+            Ok((cluster, Arc::new(factors)))
+        };
+        own.map(join).collect()
+    }
+}
