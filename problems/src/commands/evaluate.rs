@@ -1,5 +1,6 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
+use crate::commands::case_facts;
 use crate::commands::controls;
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
@@ -21,6 +22,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let solver = objective.solver();
     let controls = controls::load(solver.problem(), &loaded.case, ("--controls", arguments.shape.controls.as_deref()))?;
     let controls = controls::as_made(controls, &arguments.error);
+    case_facts::announce(objective, arguments);
     let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();
     let abandon = |_: &Failure| folder.iter().for_each(Folder::abandon);
@@ -45,7 +47,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     });
     let usage = session.processes.usage(shape.state().solver)?;
     rest.extend(closing_facts(&warnings, &arguments.left_out(solver), usage.as_ref())?);
-    let groups = vec![Group::new("", result), Group::new("State", states), Group::new("Work", rest)];
+    let cases = case_facts::cases(objective, &loaded.case.cases, (vec![], &[&shape]), None)?;
+    let groups = vec![Group::new("", result), cases, Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
     let object = json(&facts)?;
     let write =

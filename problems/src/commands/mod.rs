@@ -7,6 +7,7 @@
 //! shells and for `man`.
 
 mod arguments;
+mod case_facts;
 mod ascii;
 mod command_line;
 mod compare;

@@ -143,6 +143,12 @@ impl CasesCost {
         cost.curvature(&slice(outputs, &part.own), &rows)
     }
 
+    /// The case that a subgradient of one part belongs to; none for one that is zero in all cases.
+    pub fn case_of(&self, subgradient: &Vector) -> Option<usize> {
+        let moves = |part: &Part| slice(subgradient, &part.own).iter().any(|entry| *entry != 0.0);
+        self.parts.iter().position(moves)
+    }
+
     /// The first of the worst cases.
     pub fn worst(&self, outputs: &Vector) -> usize {
         let values = self.weighted(outputs);

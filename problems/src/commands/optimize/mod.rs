@@ -67,6 +67,7 @@ pub fn report(
         runs,
         meshes: optimization.meshes,
         shapes: &shapes,
+        cases: &loaded.case.cases,
         checks: &checks,
         left_out: session.arguments.left_out(last.objective.solver()),
         processes: session.processes.usage(shapes[1].state().solver)?,

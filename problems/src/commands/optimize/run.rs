@@ -1,5 +1,6 @@
 //! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
 
+use crate::commands::case_facts;
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
@@ -101,6 +102,7 @@ pub fn optimize(
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
+    case_facts::announce(&first, session.arguments);
     // What starts several processes asks the others to end when one has failed, and must not make them talk.
     watch_interrupts(session.processes.is_alone());
     let optimizer = &loaded.case.optimizer;

@@ -1,5 +1,6 @@
 //! The facts of an optimization.
 
+use crate::commands::case_facts;
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
 use crate::commands::mesh_words;
@@ -12,6 +13,7 @@ use crate::commands::solved_shape::{SolvedShape, solver_facts};
 use contact::plausibility::Warning;
 use contact::solvers::Usage;
 use nonsmooth::{Certificate, IterationRecord, Report, Vector};
+use scene_file::CaseScene;
 use serde_json::json;
 
 /// One evaluation; its `objective` is null if it failed, its `seconds` count from the start, its `products` are those
@@ -95,6 +97,8 @@ pub struct Ended<'a> {
     pub meshes: usize,
     /// The shape at the start of the run that it is reported by, or of the first mesh, and the shape found.
     pub shapes: &'a [SolvedShape; 2],
+    /// The load cases of the scene.
+    pub cases: &'a [CaseScene],
     /// What is implausible about the shape found.
     pub checks: &'a [Warning],
     pub left_out: Vec<&'static str>,
@@ -128,6 +132,7 @@ impl Ended<'_> {
         let pair = |title, facts| Group { title, columns: columns.clone(), facts, words: String::new() };
         let groups = vec![
             pair("", result),
+            self.cases(columns.clone())?,
             Group::new("", vec![scene_fact(self.last)]),
             self.stages()?,
             self.course()?,
@@ -136,6 +141,12 @@ impl Ended<'_> {
             self.rest()?,
         ];
         Ok(Facts { lead, groups })
+    }
+
+    /// The load cases at both ends.
+    fn cases(&self, columns: Vec<String>) -> Result<Group, Failure> {
+        let proof = self.last.report.certificate.as_ref().and_then(|certificate| certificate.composite.as_ref());
+        case_facts::cases(&self.last.objective, self.cases, (columns, &self.shapes.each_ref()), proof)
     }
 
     /// What the limits cost; nothing without one.
