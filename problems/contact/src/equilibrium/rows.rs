@@ -25,8 +25,8 @@ pub struct NodeRows {
     pub normal: [f64; 3],
     /// Directions of its rows: P n, then the tangential ones; as many as the node has rows.
     pub directions: Vec<[f64; 3]>,
-    /// Gap before loading less the interference, mm; negative where the shapes overlap. A node whose nodes are all held in a direction is
-    /// where its supports put it along that direction.
+    /// Gap before loading less the interference, mm; negative where the shapes overlap. Where supports hold all its
+    /// nodes in a direction, it is the gap of the place where they put the node along that direction.
     pub gap: f64,
     /// Tributary area A, mm².
     pub area: f64,

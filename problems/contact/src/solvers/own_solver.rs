@@ -98,8 +98,8 @@ impl From<DirectSolver> for OwnSolver {
 }
 
 impl OwnSolver {
-    /// Prepares the solver of a kind, or the one that comes first; `condensed`: where solvers by direct condensation find
-    /// the factors of each other.
+    /// Prepares the solver of a kind, or the one that comes first; `condensed`: where solvers by direct condensation
+    /// find the factors of each other.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`].

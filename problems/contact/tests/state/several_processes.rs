@@ -6,7 +6,7 @@ use crate::rank::Rank;
 use contact::communication::Communication;
 use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState, TangentsOf};
 use contact::error::ContactError;
-use contact::scene::{Scene, hertz, signorini};
+use contact::scene::{Held, Scene, Support, hertz, signorini};
 use contact::tfeti::{DualMethod, Recycling, TornOptions, TotalFeti};
 use std::sync::Arc;
 
@@ -62,6 +62,16 @@ fn solve(scene: &Scene, clusters: Option<usize>, communication: Option<Rank>, me
     }
 }
 
+/// Bodies that prescribed displacements press and shift.
+fn pressed() -> Scene {
+    let mut scene = hertz().unwrap();
+    let upper = &mut scene.upper.as_mut().unwrap().body;
+    upper.loads.clear();
+    let held = Held::Components([Some(0.01), Some(0.0), Some(-0.05)]);
+    upper.supports = vec![Support { face: "top".into(), held }];
+    scene
+}
+
 /// Runs a rank on a pool of its own: a rank that waits must not hold up the work of the others.
 fn on_threads<T: Send + 'static>(
     threads: usize,
@@ -81,6 +91,7 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
         (signorini(), [2, 2, 1], None, DualMethod::SuccessiveApproximations),
         (hertz(), [2; 3], Some(8), newton),
         (signorini(), [2; 3], Some(4), DualMethod::SuccessiveApproximations),
+        (Ok(pressed()), [2, 1, 2], None, newton),
     ];
     for (scene, subdomains, clusters, method) in cases {
         let scene = scene.unwrap().with_bricks([4; 3], subdomains);

@@ -1,9 +1,14 @@
 //! Factors that solvers of one run share: counted once, and of no influence on any result.
 
+use crate::rank::Rank;
+use contact::communication::Communication;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
+use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{Held, Scene, Support, hertz};
 use contact::solvers::{Processes, SolverPlan};
+use contact::tfeti::{TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, StateSolver, Vector};
+use std::sync::Arc;
 
 /// Scenes that differ by loads, friction and prescribed displacements alone.
 fn cases() -> [Scene; 3] {
@@ -58,6 +63,45 @@ fn later_cases_take_over_the_factors_that_the_first_one_holds() {
         let [first, second, _] = &shared;
         let counts = [first, second].map(|shape| solve(shape, 0.9997).work().factorizations);
         assert!(counts[0] > 0 && counts[0] == counts[1], "{kind:?}, {clusters:?}: {counts:?}");
+    }
+}
+
+/// Of two processes, one may still hold factors that the other has dropped: then both factor again.
+#[test]
+fn processes_take_over_factors_only_where_all_hold_them() {
+    let work = |rank: Rank, number: usize| {
+        let shelf = Arc::default();
+        let communication: Arc<dyn Communication> = Arc::new(rank);
+        let [first, second, third] = cases().map(|scene| {
+            let options = TornOptions {
+                communication: Arc::clone(&communication),
+                shelf: Arc::clone(&shelf),
+                ..TornOptions::default()
+            };
+            TotalFeti::new(Arc::new(ContactProblem::new(scene).unwrap()), options).unwrap()
+        });
+        let controls = vec![9.999; 36];
+        let solve = |solver: &TotalFeti| solver.solve(&controls, None, 1e-10).unwrap();
+        let (one, two) = (solve(&first), solve(&second));
+        let mut counts = vec![one.work().factorizations, two.work().factorizations];
+        let held = (number == 0).then_some((one, two));
+        counts.push(solve(&third).work().factorizations);
+        drop(held);
+        counts
+    };
+    let ranks: Vec<_> = Rank::all(2)
+        .enumerate()
+        .map(|(number, rank)| {
+            std::thread::spawn(move || {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+                pool.install(|| work(rank, number))
+            })
+        })
+        .collect();
+    for handle in ranks {
+        let counts = handle.join().unwrap();
+        // The lower body again, the upper one is still held by the solvers of both processes.
+        assert!(counts[0] > 0 && counts[1] == 0 && counts[2] > 0 && counts[2] < counts[0], "{counts:?}");
     }
 }
 
