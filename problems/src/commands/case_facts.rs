@@ -69,7 +69,14 @@ pub fn cases(
         let own: Vec<f64> = weighted.iter().map(|values| values[case]).collect();
         let rows = rows(objective, (scene, case), shapes, &own, &resultants, multiplier);
         facts.extend(rows.into_iter().map(|fact| if several { fact } else { fact.detail() }));
-        list.push(object(objective, (scene, case), last, own[own.len() - 1], &resultants[resultants.len() - 1], multiplier)?);
+        list.push(object(
+            objective,
+            (scene, case),
+            last,
+            own[own.len() - 1],
+            &resultants[resultants.len() - 1],
+            multiplier,
+        )?);
     }
     facts.push(Fact::json("cases", &list)?);
     let (title, words) = if several { ("Load cases", INDEPENDENT) } else { ("Forces and stresses", "") };

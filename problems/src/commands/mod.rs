@@ -7,8 +7,8 @@
 //! shells and for `man`.
 
 mod arguments;
-mod case_facts;
 mod ascii;
+mod case_facts;
 mod command_line;
 mod compare;
 mod controls;

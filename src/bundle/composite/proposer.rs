@@ -4,7 +4,7 @@ use super::base::Base;
 use super::escape::Escape;
 use super::kinks::{Kinks, Seen};
 use super::proof::PointProof;
-use super::steps::{Changes, Steps};
+use super::steps::{Changes, Steps, are_curved};
 use super::trust::Trust;
 use crate::Vector;
 use crate::bundle::evidence::Evidence;
@@ -81,9 +81,6 @@ impl Composite {
         let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
-                if at.restoring() {
-                    return Ok(Answer::Silent);
-                }
                 (weight, raised) = (weight * 10.0, true);
                 continue;
             };
@@ -238,7 +235,7 @@ impl Proposer for Composite {
     fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
         let Some(outer) = at.outer else { return };
         if let Some(known) = trial.linearization {
-            let curved = at.state.constraints.as_ref().is_some_and(|found| found.are_smooth());
+            let curved = are_curved(outer, at.state.constraints.as_deref());
             self.steps.remember(outer, &trial.proposal.trial, (known, trial.constraints), curved);
         }
         if self.escape.is_some() {
@@ -293,7 +290,7 @@ impl Proposer for Composite {
         self.escape = None;
         if let (Some(outer), Some(known)) = (at.outer, linearization) {
             let constraints = at.state.constraints.as_ref();
-            let curved = constraints.is_some_and(|found| found.are_smooth());
+            let curved = are_curved(outer, constraints.map(|found| &**found));
             let found = constraints.map(|constraints| constraints.center_evaluation());
             self.steps.remember(outer, &at.state.center, (known, found), curved);
         }

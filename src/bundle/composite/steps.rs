@@ -3,14 +3,14 @@
 use super::base::Base;
 use super::curvature::Memory;
 use super::model::{CompositeModel, CompositeStep, OuterCut};
-use crate::bundle::constrained::WorkingSet;
+use crate::bundle::constrained::{Constraints, WorkingSet};
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::proposers::proposer::Position;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
-use crate::{ConstraintEvaluation, Matrix, Polyhedron, Vector};
+use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Polyhedron, Vector};
 use std::rc::Rc;
 
 /// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h
@@ -98,7 +98,7 @@ impl Steps {
             origin: changes.origin,
         };
         let constraints = at.state.constraints.as_ref();
-        let curved = constraints.is_some_and(|found| found.are_smooth());
+        let curved = are_curved(outer, constraints.map(|found| &**found));
         if !curved && (!self.needs_curvature || outer.curvature(outputs, jacobian).is_some()) {
             return model.solve(at.solver);
         }
@@ -107,7 +107,7 @@ impl Steps {
             return model.solve(at.solver);
         }
         let working = at.working;
-        let weights_of = |step: &CompositeStep| all_weights(step, working, all.nrows());
+        let weights_of = |step: &CompositeStep| all_weights(step, working, &all, base);
         if self.weights.is_none() {
             self.weights = Some(weights_of(&model.solve(at.solver)?));
         }
@@ -132,14 +132,31 @@ fn stacked(outputs: &Matrix, constraints: Option<&Matrix>) -> Matrix {
     all
 }
 
-/// The weights of the outputs above the multipliers of the constraints, in the units of the constraints.
-fn all_weights(step: &CompositeStep, working: Option<&WorkingSet>, count: usize) -> Vector {
+/// Whether Jacobians at other points tell the curvature of the constraints: they are smooth, or functions of the outputs.
+pub(super) fn are_curved(outer: &dyn OuterFunction, constraints: Option<&Constraints>) -> bool {
+    constraints.is_some_and(|found| found.are_smooth() || !outer.constraint_kinds().is_empty())
+}
+
+/// The weights of the outputs above the multipliers of the constraints, in the units of the constraints. A piece of a
+/// nonsmooth constraint that is an output, ±c_i less a bound, counts as this output.
+fn all_weights(step: &CompositeStep, working: Option<&WorkingSet>, rows: &Matrix, base: &Base) -> Vector {
     let weights = step.weights();
     let Some(working) = working else { return weights };
     let first = weights.len();
-    let mut all = weights.resize_vertically(count, 0.0);
-    for (tangent, multiplier) in working.tangents.iter().zip(step.row_multipliers.iter().skip(working.own_rows)) {
-        all[first + tangent.constraint] += multiplier / working.units[tangent.constraint];
+    let mut all = weights.resize_vertically(rows.nrows(), 0.0);
+    let multipliers = step.row_multipliers.iter().skip(working.own_rows);
+    for (tangent, multiplier) in working.tangents.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier != 0.0)
+    {
+        let share = multiplier / working.units[tangent.constraint];
+        if working.kinds[tangent.constraint] != ConstraintKind::Nonsmooth {
+            all[first + tangent.constraint] += share;
+        } else if *tangent.point == base.point {
+            let is_row =
+                |sign: f64, row: usize| tangent.slope.iter().zip(rows.row(row).iter()).all(|(a, b)| *a == sign * b);
+            let found = (0..first)
+                .find_map(|row| [1.0, -1.0].into_iter().find(|sign| is_row(*sign, row)).map(|sign| (row, sign)));
+            found.into_iter().for_each(|(row, sign)| all[row] += sign * share);
+        }
     }
     all
 }

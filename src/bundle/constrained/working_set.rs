@@ -31,6 +31,8 @@ pub(crate) struct WorkingSet {
     pub tangents: Rc<Vec<Tangent>>,
     /// σ_j of every constraint.
     pub units: Vec<f64>,
+    /// What every constraint asks for.
+    pub kinds: Vec<ConstraintKind>,
     /// v(x̂) − s ≥ 0.
     pub reduction: f64,
     /// Length of the step that the relaxation takes.
@@ -65,6 +67,7 @@ impl WorkingSet {
             set: self.set.with_tangents_kept(&kept),
             tangents: Rc::new(kept.iter().map(|&i| self.tangents[i].clone()).collect()),
             units: self.units.clone(),
+            kinds: self.kinds.clone(),
             ..*self
         }
     }
@@ -110,6 +113,7 @@ impl WorkingSet {
             own_rows,
             tangents: Rc::new(seen.iter().map(|seen| seen.tangent.clone()).collect()),
             units: (0..constraints.kinds().len()).map(|j| constraints.unit(j)).collect(),
+            kinds: constraints.kinds().to_vec(),
             forced_length,
             reduction: (violation - relaxation).max(0.0),
             feasible: excess <= 1.0 && !costly,

@@ -8,6 +8,7 @@ mod error_estimate;
 #[path = "../common/field_check.rs"]
 mod field_check;
 mod field_quantities;
+mod load_cases;
 mod objectives;
 mod prescribed;
 mod reference_cases;
