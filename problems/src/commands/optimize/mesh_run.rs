@@ -17,10 +17,16 @@ use scene_file::{AccuracyName, MethodName};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Predicted decrease, relative to Θ, at which an attempt ends: enough to tell which one is worth to go on from.
-const ATTEMPT: f64 = 1e-2;
-/// Most evaluations of an attempt: most ways have found where they lead by then.
-const ATTEMPT_EVALUATIONS: usize = 12;
+/// Predicted decrease, relative to Θ, and number of evaluations at which an attempt ends: enough to tell which one is
+/// worth to go on from. What a coarse net has found is refined almost to its end, since that is where the whole run
+/// then begins; a first run that is cut off there would have to learn its model again.
+fn ends(attempt: Attempt) -> (f64, usize) {
+    match attempt {
+        Attempt::Direct | Attempt::Start(_) => (1e-2, 10),
+        Attempt::Coarse => (1e-2, 25),
+        Attempt::Refined => (1e-3, 25),
+    }
+}
 
 /// An optimization on one mesh that has ended.
 pub struct MeshRun {
@@ -110,11 +116,14 @@ fn settings(stage: &MeshStage, time_limit: Option<f64>) -> BundleTrustConfig {
         AccuracyName::Tightest => AccuracyPolicy::Tightest,
         AccuracyName::OnDemand => AccuracyPolicy::ON_DEMAND,
     };
-    let is_attempt = stage.part.is_attempt();
+    let (tolerance, evaluations) = match stage.part {
+        Part::Try(attempt) => ends(attempt),
+        _ => (0.0, usize::MAX),
+    };
     BundleTrustConfig {
-        max_evaluations: optimizer.max_evaluations.min(if is_attempt { ATTEMPT_EVALUATIONS } else { usize::MAX }),
-        tolerance: if is_attempt { stage.case.tolerance.max(ATTEMPT) } else { stage.case.tolerance },
-        confirm: !is_attempt,
+        max_evaluations: optimizer.max_evaluations.min(evaluations),
+        tolerance: stage.case.tolerance.max(tolerance),
+        confirm: !stage.part.is_attempt(),
         max_seconds: time_limit,
         bundle_size: optimizer.bundle_size,
         accuracy,

@@ -8,7 +8,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::mesh_words::mesh;
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
-use crate::commands::optimize::stages::{MeshStage, Part, stages};
+use crate::commands::optimize::stages::{Attempt, MeshStage, Part, stages};
 use crate::commands::optimize::ways::{beginning, best, chosen};
 use crate::commands::run_kind::RunKind;
 use crate::commands::solved_shape::{ContactObjective, check_ahead, optimized_objective, wanted};
@@ -45,9 +45,11 @@ impl OptimizationRun {
             Part::Start(_) | Part::Try(_) => vec![chosen],
             Part::Whole | Part::Fair => {
                 let attempt = best(runs.clone().filter(|run| run.part.is_attempt()));
-                let later = runs.skip_while(|run| run.part.is_attempt());
+                let later = runs.clone().skip_while(|run| run.part.is_attempt());
                 let until = later.take_while(|run| run.part == Part::Whole || chosen.part == Part::Fair);
-                attempt.into_iter().chain(until).collect()
+                let is_refined = attempt.is_some_and(|run| run.part == Part::Try(Attempt::Refined));
+                let coarse = runs.clone().filter(|run| is_refined && run.part == Part::Try(Attempt::Coarse));
+                coarse.chain(attempt).chain(until).collect()
             }
         }
     }

@@ -26,6 +26,8 @@ pub enum Attempt {
     Direct,
     /// A coarse net of controls from the start.
     Coarse,
+    /// All controls from where the coarse net has ended, unless that agrees with the direct way.
+    Refined,
     /// All controls from another start, counted from 2.
     Start(usize),
 }
@@ -39,6 +41,7 @@ impl Part {
             Self::Start(number) => Some(format!("start_{number}")),
             Self::Try(Attempt::Direct) => Some("try_direct".into()),
             Self::Try(Attempt::Coarse) => Some("try_coarse".into()),
+            Self::Try(Attempt::Refined) => Some("try_refined".into()),
             Self::Try(Attempt::Start(number)) => Some(format!("try_start_{number}")),
             Self::Fair => Some("fair".into()),
         }
@@ -68,7 +71,7 @@ fn attempts(case: &Case) -> Vec<Attempt> {
         return vec![];
     }
     let starts = (2..=optimizer.starts).map(Attempt::Start);
-    [Attempt::Direct, Attempt::Coarse].into_iter().chain(starts).collect()
+    [Attempt::Direct, Attempt::Coarse, Attempt::Refined].into_iter().chain(starts).collect()
 }
 
 /// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of its continuation, else one

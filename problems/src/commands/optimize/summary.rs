@@ -7,6 +7,7 @@ use crate::commands::numbers::{exact, number, raised};
 use crate::commands::optimize::fairness::bending_of;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
+use crate::commands::optimize::ways::AGREES;
 use crate::commands::report::found_label;
 use crate::commands::shape_facts::{self, is_proved};
 use crate::commands::solved_shape::{SolvedShape, solver_facts};
@@ -77,9 +78,6 @@ fn optima(runs: &[MeshRun]) -> usize {
     let confirmed = runs.iter().filter(|run| is_proved(&run.report) && !run.part.is_attempt());
     different(confirmed.map(|run| run.report.value).collect(), decrease)
 }
-
-/// Relative difference of Θ within which the end of an attempt agrees with the shape found: about its tolerance.
-const AGREES: f64 = 0.03;
 
 /// How many attempts have come to the Θ found, of how many; none without attempts.
 fn agreement(runs: &[MeshRun], found: f64) -> Option<[usize; 2]> {

@@ -73,8 +73,19 @@ pub fn chosen(runs: &[MeshRun]) -> Option<&MeshRun> {
 }
 
 fn is_as_good(fair: &MeshRun, other: &MeshRun) -> bool {
-    let allowed = other.report.value + AS_GOOD * other.report.value.abs();
-    is_proved(&fair.report) && violation(fair) <= violation(other) && fair.report.value <= allowed
+    let (gain, same) = (other.report.value - fair.report.value, AS_GOOD * other.report.value.abs());
+    violation(fair) <= violation(other) && (gain > same || gain >= -same && is_proved(&fair.report))
+}
+
+/// Relative difference of Θ within which two attempts agree: about their tolerance.
+pub const AGREES: f64 = 0.03;
+
+/// Whether the direct way and the coarse net, ended both, have come to about the same Θ.
+fn agree(before: &[MeshRun]) -> bool {
+    let [direct, coarse, ..] = before else { return false };
+    let apart = (direct.report.value - coarse.report.value).abs();
+    let ended = [direct, coarse].iter().all(|run| run.report.termination.is_stationary());
+    ended && apart <= AGREES * direct.report.value.abs()
 }
 
 /// Where a part of an optimization begins, after the runs before it, in what the whole optimization began with; none if
@@ -95,17 +106,29 @@ pub fn beginning(
             at(other_start(objective, (start, first_step), number)?, 1.0)
         }
         (Part::Mesh(_), Some(last)) => later(last, LATER_FIRST_STEP),
+        (Part::Try(Attempt::Refined), _) if agree(before) => return Ok(None),
+        (Part::Try(Attempt::Refined), Some(last)) => later(last, 1.0),
         (Part::Whole, Some(last)) => {
             let best = best(before.iter()).unwrap_or(last);
             // All other controls have yet to follow those of the coarse net.
-            later(best, if best.part == Part::Try(Attempt::Coarse) { 1.0 } else { LATER_FIRST_STEP })
+            let plain = later(best, if best.part == Part::Try(Attempt::Coarse) { 1.0 } else { LATER_FIRST_STEP });
+            fairer(objective, best, first_step)?.unwrap_or(plain)
         }
-        (Part::Fair, Some(last)) if is_proved(&last.report) => {
-            let Some(fair) = fair_shape(objective, &last.report.solution)? else { return Ok(None) };
-            Beginning { bending_before: Some(fair.before), ..at(fair.controls, LATER_FIRST_STEP) }
-        }
-        (Part::Fair, _) => return Ok(None),
+        (Part::Fair, Some(last)) => return fairer(objective, last, first_step),
         _ => at(start.clone(), 1.0),
+    }))
+}
+
+/// A beginning at a fairer shape than that where a run has ended; none unless it has ended where Θ is stationary.
+fn fairer(objective: &ContactObjective, run: &MeshRun, first_step: f64) -> Result<Option<Beginning>, Failure> {
+    if !run.report.termination.is_stationary() || !run.report.is_feasible() {
+        return Ok(None);
+    }
+    let fair = fair_shape(objective, &run.report.solution)?;
+    Ok(fair.map(|fair| Beginning {
+        controls: fair.controls,
+        first_step: LATER_FIRST_STEP * first_step,
+        bending_before: Some(fair.before),
     }))
 }
 
