@@ -15,9 +15,7 @@ pub fn bending(surface: &SplineSurface, size: [f64; 2]) -> Matrix {
     let gram = |rows: Matrix| rows.tr_mul(&rows);
     let [shares, slopes, curvatures] =
         [shares, slopes, curvatures].map(|rows| [gram(rows(&places[0])), gram(rows(&places[1]))]);
-    curvatures[0].kronecker(&shares[1])
-        + slopes[0].kronecker(&slopes[1]) * 2.0
-        + shares[0].kronecker(&curvatures[1])
+    curvatures[0].kronecker(&shares[1]) + slopes[0].kronecker(&slopes[1]) * 2.0 + shares[0].kronecker(&curvatures[1])
 }
 
 /// Roots of the lengths that belong to the places, on the diagonal.

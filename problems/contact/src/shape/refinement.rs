@@ -64,14 +64,16 @@ mod tests {
     /// The heights of a coarse surface are those of the fine one, at places that are no knots.
     #[test]
     fn refinement_is_exact() {
-        let kinds = [(SplineKind::BSpline(3), [6, 9]), (SplineKind::BSpline(2), [7, 5]), (SplineKind::BSpline(1), [6, 5])];
+        let kinds =
+            [(SplineKind::BSpline(3), [6, 9]), (SplineKind::BSpline(2), [7, 5]), (SplineKind::BSpline(1), [6, 5])];
         for (kind, counts) in kinds.into_iter().chain([(SplineKind::Bezier, [7, 5])]) {
             let fine = SplineSurface::new(kind, counts).expect("valid");
             for count in 2..9 {
                 let coarse = fine.coarser(count).expect("valid");
                 assert!((0..2).all(|axis| coarse.counts()[axis] == count.min(counts[axis])), "{:?}", coarse.counts());
                 let controls: Vec<f64> = (0..coarse.control_count()).map(|k| (1.0 + 7.0 * k as f64).sin()).collect();
-                let refined = fine.refinement(&coarse).expect("regular") * nonsmooth::Vector::from_vec(controls.clone());
+                let refined =
+                    fine.refinement(&coarse).expect("regular") * nonsmooth::Vector::from_vec(controls.clone());
                 let places: [Vec<f64>; 2] = std::array::from_fn(|_| (0..=40).map(|k| f64::from(k) / 40.0).collect());
                 let there = coarse.height_map_at(places.clone()).heights(&controls);
                 let here = fine.height_map_at(places).heights(refined.as_slice());

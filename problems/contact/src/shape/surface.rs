@@ -71,9 +71,7 @@ impl SplineSurface {
     /// Places of the control points of the surface x₃ = Σ α_ij N_i N_j along both axes, mm, as a STEP file has them:
     /// the means of p neighbouring knots (Greville abscissae), with which Σ x_i N_i = x.
     pub fn control_places(&self, size: [f64; 2]) -> [Vec<f64>; 2] {
-        std::array::from_fn(|axis| {
-            self.bases[axis].greville().into_iter().map(|place| size[axis] * place).collect()
-        })
+        std::array::from_fn(|axis| self.bases[axis].greville().into_iter().map(|place| size[axis] * place).collect())
     }
 
     /// ∫∫ N_i N_j over the unit square, per control.

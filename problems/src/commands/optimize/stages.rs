@@ -26,7 +26,7 @@ pub enum Attempt {
     Direct,
     /// A coarse net of controls from the start.
     Coarse,
-    /// All controls from where the coarse net has ended, unless that agrees with the direct way.
+    /// All controls from where the coarse net has ended, unless the direct way has ended as low.
     Refined,
     /// All controls from another start, counted from 2.
     Start(usize),
@@ -61,8 +61,8 @@ pub struct MeshStage {
     pub case: Case,
 }
 
-/// The attempts of a case: the direct way, coarse to fine in the controls, other starts. None where one run is asked for
-/// or where there is no coarse net, and for functions of the displacements: their runs by cuts are long, and were
+/// The attempts of a case: the direct way, coarse to fine in the controls, other starts. None where one run is asked
+/// for or where there is no coarse net, and for functions of the displacements: their runs by cuts are long, and were
 /// measured to end at the same values.
 fn attempts(case: &Case) -> Vec<Attempt> {
     let optimizer = &case.optimizer;
@@ -74,9 +74,9 @@ fn attempts(case: &Case) -> Vec<Attempt> {
     [Attempt::Direct, Attempt::Coarse, Attempt::Refined].into_iter().chain(starts).collect()
 }
 
-/// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of its continuation, else one
-/// per start. On the meshes of a continuation, the axis with most bricks gets the number asked for, and the others keep
-/// their proportion to it.
+/// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of its
+/// continuation, else one per start. On the meshes of a continuation, the axis with most bricks gets the number asked
+/// for, and the others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;

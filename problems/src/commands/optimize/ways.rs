@@ -80,12 +80,11 @@ fn is_as_good(fair: &MeshRun, other: &MeshRun) -> bool {
 /// Relative difference of Θ within which two attempts agree: about their tolerance.
 pub const AGREES: f64 = 0.03;
 
-/// Whether the direct way and the coarse net, ended both, have come to about the same Θ.
-fn agree(before: &[MeshRun]) -> bool {
+/// Whether the coarse net leads to no other Θ than the direct way, which has come to its end: not worth to be refined.
+fn is_outdone(before: &[MeshRun]) -> bool {
     let [direct, coarse, ..] = before else { return false };
-    let apart = (direct.report.value - coarse.report.value).abs();
-    let ended = [direct, coarse].iter().all(|run| run.report.termination.is_stationary());
-    ended && apart <= AGREES * direct.report.value.abs()
+    let bar = direct.report.value - AGREES * direct.report.value.abs();
+    direct.report.termination.is_stationary() && violation(direct) <= violation(coarse) && coarse.report.value >= bar
 }
 
 /// Where a part of an optimization begins, after the runs before it, in what the whole optimization began with; none if
@@ -99,14 +98,15 @@ pub fn beginning(
     before: &[MeshRun],
     (start, first_step): (&Vector, f64),
 ) -> Result<Option<Beginning>, Failure> {
-    let at = |controls: Vector, share: f64| Beginning { controls, first_step: share * first_step, bending_before: None };
+    let at =
+        |controls: Vector, share: f64| Beginning { controls, first_step: share * first_step, bending_before: None };
     let later = |run: &MeshRun, share: f64| at(run.report.solution.clone(), share);
     Ok(Some(match (part, before.last()) {
         (Part::Start(number @ 2..) | Part::Try(Attempt::Start(number)), _) => {
             at(other_start(objective, (start, first_step), number)?, 1.0)
         }
         (Part::Mesh(_), Some(last)) => later(last, LATER_FIRST_STEP),
-        (Part::Try(Attempt::Refined), _) if agree(before) => return Ok(None),
+        (Part::Try(Attempt::Refined), _) if is_outdone(before) => return Ok(None),
         (Part::Try(Attempt::Refined), Some(last)) => later(last, 1.0),
         (Part::Whole, Some(last)) => {
             let best = best(before.iter()).unwrap_or(last);
