@@ -83,9 +83,9 @@ pub struct OptimizerSection {
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
     pub starts: usize,
     /// Every start is optimized once, with all controls. Default false for a height surface with more than 3 control
-    /// points along an axis and an objective of the pressures: attempts with all controls and from 3 control points per
-    /// axis to all, then, from the best of them, a run to the end, which begins at the shape of least bending that is as
-    /// good. Other scenes, and growing meshes, are optimized once anyway.
+    /// points along an axis and an objective of the pressures: attempts with all controls and from 3 control points
+    /// per axis to all, then, from the best of them, a run to the end, which begins at the shape of least bending that
+    /// is as good. Other scenes, and growing meshes, are optimized once anyway.
     pub single: bool,
 }
 

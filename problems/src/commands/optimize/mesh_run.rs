@@ -2,9 +2,9 @@
 
 use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
+use crate::commands::optimize::coarse_net::{Beginning, coarse_directions};
 use crate::commands::optimize::stages::{Attempt, MeshStage, Part};
 use crate::commands::optimize::subspace::Subspace;
-use crate::commands::optimize::ways::{Beginning, coarse_directions};
 use crate::commands::output::notice;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;

@@ -1,5 +1,6 @@
 //! `optimize`: the shape of least contact pressure measure, on one mesh or on growing ones, kept on disk if asked for.
 
+mod coarse_net;
 mod fairness;
 pub mod mesh_run;
 pub mod run;

@@ -1,6 +1,6 @@
 //! The runs of an optimization: one, one per growing mesh, one per start, or attempts with a run from the best of them.
 
-use crate::commands::optimize::ways::has_coarse_net;
+use crate::commands::optimize::coarse_net::has_coarse_net;
 use nonsmooth::Journal;
 use scene_file::{Case, MethodName, default_subdomains};
 use std::path::Path;
@@ -74,9 +74,9 @@ fn attempts(case: &Case) -> Vec<Attempt> {
     [Attempt::Direct, Attempt::Coarse, Attempt::Refined].into_iter().chain(starts).collect()
 }
 
-/// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of its
-/// continuation, else one per start. On the meshes of a continuation, the axis with most bricks gets the number asked
-/// for, and the others keep their proportion to it.
+/// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of
+/// its continuation, else one per start. On the meshes of a continuation, the axis with most bricks gets the number
+/// asked for, and the others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;

@@ -1,15 +1,15 @@
 //! Where the runs of an optimization begin: the start of the scene, other starts, or what earlier runs have found.
 
 use crate::commands::failure::Failure;
+use crate::commands::optimize::coarse_net::{Beginning, coarse_directions};
 use crate::commands::optimize::fairness::fair_shape;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::{Attempt, Part};
 use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::ContactObjective;
-use contact::shape::HeightShape;
+use nonsmooth::Vector;
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;
-use nonsmooth::{Matrix, Vector};
 
 /// First step of a run that goes on from a shape already optimized, in first steps of the first run. The gap there says
 /// nothing about the changes that are left, since the bodies have followed the surface; steps from a fourteenth to a
@@ -18,33 +18,6 @@ const LATER_FIRST_STEP: f64 = 0.2;
 
 /// Largest change of a control at a further start, in first steps: several times the length on which contact changes.
 const CHANGE: f64 = 4.0;
-
-/// Control points per axis of a coarse net: a bowl or a saddle, with every slope.
-const COARSE: usize = 3;
-
-/// Where a run begins.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Beginning {
-    pub controls: Vector,
-    pub first_step: f64,
-    /// The bending of the shape that a fairer one has replaced.
-    pub bending_before: Option<f64>,
-}
-
-/// Whether a height surface has more control points than a coarse net.
-pub fn has_coarse_net(heights: &HeightShape) -> bool {
-    heights.control_points.iter().any(|count| *count > COARSE)
-}
-
-/// The controls of a coarse net within those of the surface, as directions; none for other shapes.
-///
-/// # Errors
-/// [`Failure::Input`] for a surface that is none.
-pub fn coarse_directions(objective: &ContactObjective) -> Result<Option<Matrix>, Failure> {
-    let Some(heights) = objective.solver().problem().scene.heights() else { return Ok(None) };
-    let surface = heights.surface()?;
-    Ok(Some(surface.refinement(&surface.coarser(COARSE)?)?))
-}
 
 /// The relative violation of the limits at the end of a run; 0 where all are kept.
 fn violation(run: &MeshRun) -> f64 {
