@@ -78,10 +78,15 @@ pub struct OptimizerSection {
     /// proportion; empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub continuation: Vec<usize>,
-    /// Optimizations from so many starts on one mesh: the start of the scene, then random surfaces near it, always the
-    /// same ones.
+    /// So many starts on one mesh, always the same ones: that of the scene, a surface that follows the counter surface,
+    /// then smooth random surfaces; of a lattice, random displacements.
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
     pub starts: usize,
+    /// Every start is optimized once, with all controls. Default false for a height surface with more than 3 control
+    /// points along an axis and an objective of the pressures: attempts with all controls and from 3 control points
+    /// per axis to all, then, from the best of them, a run to the end, which begins at the shape of least bending that
+    /// is as good. Other scenes, and growing meshes, are optimized once anyway.
+    pub single: bool,
 }
 
 impl Default for OptimizerSection {
@@ -96,6 +101,7 @@ impl Default for OptimizerSection {
             accuracy: AccuracyName::Tightest,
             continuation: vec![],
             starts: 1,
+            single: false,
         }
     }
 }

@@ -161,6 +161,10 @@ pub struct Course {
     /// Control heights to start the optimization from, a file as with --controls of evaluate [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
+    /// Optimize every start once, with all controls: no attempts, no coarse net, no fairness [default: optimizer.single
+    /// of the scene].
+    #[arg(long)]
+    pub single: bool,
     /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
     /// --new-version, --verbose, --json only).
     #[arg(long, value_name = "DIR")]
@@ -305,6 +309,7 @@ impl Arguments {
         if let Some(folder) = &self.files.out {
             file.output.folder = Some(folder.display().to_string());
         }
+        file.optimizer.single |= self.course.single;
         Ok(file)
     }
 
@@ -372,7 +377,7 @@ impl Arguments {
             json: self.json,
             verbose: self.verbose,
             optimizer: self.optimizer.only(&LIMITS),
-            course: Course { start_controls: None, ..self.course.clone() },
+            course: Course { start_controls: None, single: false, ..self.course.clone() },
             series: self.series.clone(),
             results: self.results.clone(),
             common: Common { print_scene: false, print_schema: false, ..self.common.clone() },

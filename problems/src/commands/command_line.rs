@@ -26,7 +26,12 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 /// Runs the binary of this name on its own scene, the text of a scene file.
 pub fn run(binary: &'static str, scene: &str) -> ExitCode {
-    let scene = SceneFile::parse(scene, binary);
+    // The scenes of the paper are optimized as there.
+    let single = |mut scene: SceneFile| {
+        scene.optimizer.single = true;
+        scene
+    };
+    let scene = SceneFile::parse(scene, binary).map(single);
     let parser = help_with_defaults(Arguments::parser(), scene.as_ref().ok())
         .override_usage(format!("{binary} [COMMAND] [OPTIONS]"))
         .after_help(examples(binary, ""));

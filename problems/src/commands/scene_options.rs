@@ -138,7 +138,7 @@ const OPTIMIZER_OPTIONS: [SceneOption; 5] = [
     option(
         (OPTIMIZER, "starts", "K"),
         &["optimizer.starts"],
-        "Optimize from so many starts: that of the scene, then random surfaces near it; reports how many optima they reach",
+        "Optimize from so many starts: that of the scene, one that follows the counter surface, then smooth random ones; reports how many agree",
     ),
 ];
 

@@ -45,6 +45,7 @@ mod tall_columns;
 mod terminal;
 mod toy2d;
 mod vtk_files;
+mod ways;
 
 #[path = "../../examples/own_objective.rs"]
 mod own_objective;

@@ -25,7 +25,7 @@ fn near(found: &Value, expected: f64, tolerance: f64) {
 /// The wanted pressure of `seal.toml` is approached by the composite method, and the end is proved stationary.
 #[test]
 fn a_seal_comes_near_its_wanted_pressure() {
-    let report = json(contact3d(), &[&scene("seal.toml"), "--json"]);
+    let report = json(contact3d(), &[&scene("seal.toml"), "--single", "--json"]);
     near(&report["objective_start"], 2.0433999589e-2, 1e-8);
     near(&report["objective"], 3.4670119981e-3, 1e-6);
     assert_eq!((report["evaluations"].as_u64(), report["jacobians"].as_u64()), (Some(5), Some(5)));

@@ -42,8 +42,24 @@ impl Basis {
         Ok(Self { degree, count, knots })
     }
 
+    /// A clamped basis of this degree with inner knots in (0, 1), ascending.
+    pub(crate) fn clamped_at(degree: usize, inner: impl Iterator<Item = f64>) -> Self {
+        let mut knots = vec![0.0; degree + 1];
+        knots.extend(inner);
+        let count = knots.len();
+        knots.extend(vec![1.0; degree + 1]);
+        Self { degree, count, knots }
+    }
+
     pub fn degree(&self) -> usize {
         self.degree
+    }
+
+    /// The means of p neighbouring knots, one per function, with which Σ t_i N_i = t.
+    pub fn greville(&self) -> Vec<f64> {
+        let degree = self.degree.max(1);
+        let mean = |index: usize| self.knots[index + 1..=index + degree].iter().sum::<f64>() / degree as f64;
+        (0..self.count).map(mean).collect()
     }
 
     /// All knots, repetitions listed.

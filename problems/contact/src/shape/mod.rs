@@ -2,15 +2,18 @@
 //! admissible set.
 
 mod admissible;
+mod bending;
 mod bspline;
 mod heights;
 mod lattice;
 mod map;
 mod pieces;
+mod refinement;
 mod scene;
 mod surface;
 
 pub use admissible::{AdmissibleSet, ShapeBounds};
+pub use bending::bending;
 pub use heights::HeightShape;
 pub(crate) use heights::height_map;
 pub use lattice::{Coordinates, Directions, LatticeShape, NodeBound};

@@ -43,6 +43,14 @@ impl SplineSurface {
         Ok(Self { bases: [basis(counts[0])?, basis(counts[1])?] })
     }
 
+    pub(crate) fn of_bases(bases: [Basis; 2]) -> Self {
+        Self { bases }
+    }
+
+    pub(crate) fn bases(&self) -> &[Basis; 2] {
+        &self.bases
+    }
+
     /// Control points per axis.
     pub fn counts(&self) -> [usize; 2] {
         [self.bases[0].count(), self.bases[1].count()]
@@ -63,12 +71,7 @@ impl SplineSurface {
     /// Places of the control points of the surface x₃ = Σ α_ij N_i N_j along both axes, mm, as a STEP file has them:
     /// the means of p neighbouring knots (Greville abscissae), with which Σ x_i N_i = x.
     pub fn control_places(&self, size: [f64; 2]) -> [Vec<f64>; 2] {
-        std::array::from_fn(|axis| {
-            let basis = &self.bases[axis];
-            let degree = basis.degree().max(1);
-            let mean = |index: usize| basis.knots()[index + 1..=index + degree].iter().sum::<f64>() / degree as f64;
-            (0..basis.count()).map(|index| size[axis] * mean(index)).collect()
-        })
+        std::array::from_fn(|axis| self.bases[axis].greville().into_iter().map(|place| size[axis] * place).collect())
     }
 
     /// ∫∫ N_i N_j over the unit square, per control.

@@ -107,7 +107,10 @@ impl KeptRun {
                 () if own.optimizer.starts > 1 => Kind::Starts,
                 () => Kind::Single,
             };
-            (kind, places.filter(|place| Journal::exists(place)).collect())
+            let mut parts: Vec<PathBuf> = places.filter(|place| Journal::exists(place)).collect();
+            // The whole run before its attempts.
+            parts.sort_by_key(|place| place != root);
+            (kind, parts)
         } else {
             (Kind::Part, vec![folder.to_owned()])
         };

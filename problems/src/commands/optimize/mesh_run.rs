@@ -2,22 +2,36 @@
 
 use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
-use crate::commands::optimize::stages::{MeshStage, Part};
+use crate::commands::optimize::coarse_net::{Beginning, coarse_directions};
+use crate::commands::optimize::stages::{Attempt, MeshStage, Part};
+use crate::commands::optimize::subspace::Subspace;
 use crate::commands::output::notice;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
 use contact::standstill::standstill;
 use nonsmooth::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Observer, Report, VariableScaling,
-    Vector,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, NonsmoothObjective, Observer,
+    Polyhedron, Report, VariableScaling, Vector,
 };
 use scene_file::{AccuracyName, MethodName};
 use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Predicted decrease, relative to Θ, and number of evaluations at which an attempt ends: enough to tell which one is
+/// worth to go on from. What a coarse net has found is refined almost to its end, since that is where the whole run
+/// then begins; a first run that is cut off there would have to learn its model again.
+fn ends(attempt: Attempt) -> (f64, usize) {
+    match attempt {
+        Attempt::Direct | Attempt::Start(_) => (1e-2, 10),
+        Attempt::Coarse => (1e-2, 25),
+        Attempt::Refined => (1e-3, 25),
+    }
+}
 
 /// An optimization on one mesh that has ended.
 pub struct MeshRun {
     /// Θ on its mesh.
-    pub objective: ContactObjective,
+    pub objective: Arc<ContactObjective>,
     /// What the optimizer reports.
     pub report: Report,
     /// Number of evaluations that were answered from the journal.
@@ -26,6 +40,8 @@ pub struct MeshRun {
     pub part: Part,
     /// The controls that it started from.
     pub initial_controls: Vector,
+    /// The bending of the shape that a fairer one has replaced at the start.
+    pub bending_before: Option<f64>,
     /// Whether its journal, if it has one, holds all evaluations.
     pub is_kept: bool,
 }
@@ -53,49 +69,82 @@ impl MeshRun {
     }
 }
 
-/// Optimizes on one mesh, from initial controls with a first step, with a journal if there is one.
+/// Optimizes on one mesh, from where the run begins, with a journal if there is one.
 pub fn run_on_mesh(
-    objective: ContactObjective,
+    objective: Arc<ContactObjective>,
     stage: &MeshStage,
-    (initial_controls, first_step): (Vector, f64),
+    Beginning { controls: initial_controls, first_step, bending_before }: Beginning,
     time_limit: Option<f64>,
     folder: Option<&RunFolder>,
     status: &StatusLine,
 ) -> Result<MeshRun, Failure> {
-    let optimizer = &stage.case.optimizer;
-    let accuracy = match optimizer.accuracy {
-        AccuracyName::Tightest => AccuracyPolicy::Tightest,
-        AccuracyName::OnDemand => AccuracyPolicy::ON_DEMAND,
+    let directions = match stage.part {
+        Part::Try(Attempt::Coarse) => coarse_directions(&objective)?,
+        _ => None,
     };
-    let config = BundleTrustConfig {
-        max_evaluations: optimizer.max_evaluations,
-        tolerance: stage.case.tolerance,
-        max_seconds: time_limit,
-        first_step: Some(first_step),
-        bundle_size: optimizer.bundle_size,
-        accuracy,
-        composite_model: stage.case.method == MethodName::Composite,
-        scaling: VariableScaling::Linear(objective.coordinates(&initial_controls, first_step)),
-        ..BundleTrustConfig::default()
-    };
+    let count = directions.as_ref().map_or(initial_controls.len(), Matrix::ncols);
+    let mean = || Vector::from_element(count, initial_controls.mean());
+    let scaled_at = if directions.is_some() { mean() } else { initial_controls.clone() };
+    let scaling = VariableScaling::Linear(objective.coordinates(&scaled_at, first_step));
+    let config = BundleTrustConfig { first_step: Some(first_step), scaling, ..settings(stage, time_limit) };
     let name = stage.part.folder();
     let label = name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-    let journaled = folder.map(|folder| folder.journaled(&objective, name.as_deref())).transpose()?;
+    let journaled = folder.map(|folder| folder.journaled(&*objective, name.as_deref())).transpose()?;
     let replayed = journaled.as_ref().map_or(0, Journaled::held);
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
-    let set = objective.solver().problem().admissible.polyhedron().clone();
-    let mut method = BundleTrust::new(config)?.constraints(set).observer(progress);
+    let set = objective.solver().problem().admissible.polyhedron();
+    let method = BundleTrust::new(config)?.observer(progress);
+    let within = (set, directions.as_ref());
     let report = match &journaled {
-        None => method.minimize(&objective, initial_controls.clone())?,
+        None => minimized(method, &*objective, &initial_controls, within)?,
         Some(journaled) => {
-            let mut report = method.observer(warner(journaled)).minimize(journaled, initial_controls.clone())?;
+            let method = method.observer(warner(journaled));
+            let mut report = minimized(method, journaled, &initial_controls, within)?;
             journaled.complete(&mut report);
             report
         }
     };
     let is_kept = journaled.as_ref().is_none_or(Journaled::is_complete);
     drop(journaled);
-    Ok(MeshRun { objective, report, replayed, part: stage.part, initial_controls, is_kept })
+    Ok(MeshRun { objective, report, replayed, part: stage.part, initial_controls, bending_before, is_kept })
+}
+
+/// The settings of the optimizer for a run, but for its first step and its coordinates.
+fn settings(stage: &MeshStage, time_limit: Option<f64>) -> BundleTrustConfig {
+    let optimizer = &stage.case.optimizer;
+    let accuracy = match optimizer.accuracy {
+        AccuracyName::Tightest => AccuracyPolicy::Tightest,
+        AccuracyName::OnDemand => AccuracyPolicy::ON_DEMAND,
+    };
+    let (tolerance, evaluations) = match stage.part {
+        Part::Try(attempt) => ends(attempt),
+        _ => (0.0, usize::MAX),
+    };
+    BundleTrustConfig {
+        max_evaluations: optimizer.max_evaluations.min(evaluations),
+        tolerance: stage.case.tolerance.max(tolerance),
+        confirm: !stage.part.is_attempt(),
+        max_seconds: time_limit,
+        bundle_size: optimizer.bundle_size,
+        accuracy,
+        composite_model: stage.case.method == MethodName::Composite,
+        ..BundleTrustConfig::default()
+    }
+}
+
+/// The run of a method within a set, along some directions if they are given.
+fn minimized<O: NonsmoothObjective>(
+    method: BundleTrust<'_>,
+    objective: &O,
+    start: &Vector,
+    (set, directions): (&Polyhedron, Option<&Matrix>),
+) -> Result<Report, Failure> {
+    let Some(directions) = directions else {
+        return Ok(method.constraints(set.clone()).minimize(objective, start.clone())?);
+    };
+    let subspace = Subspace::new(objective, start.clone(), directions.clone());
+    let mut method = method.constraints(subspace.set(set)?);
+    Ok(subspace.reported(method.minimize(&subspace, Vector::zeros(directions.ncols()))?))
 }
 
 /// Says what the journal warns of as soon as it does.

@@ -1,10 +1,14 @@
 //! `optimize`: the shape of least contact pressure measure, on one mesh or on growing ones, kept on disk if asked for.
 
+mod coarse_net;
+mod fairness;
 pub mod mesh_run;
 pub mod run;
 pub mod stages;
+mod subspace;
 pub mod summary;
 mod vtk_history;
+mod ways;
 
 use crate::commands::facts::line;
 use crate::commands::failure::Failure;
@@ -12,7 +16,6 @@ use crate::commands::folder::{Folder, REPORT, continuation, json, printed_with_f
 use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
-use crate::commands::optimize::stages::Part;
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::{export_command, files};
 use crate::commands::solved_shape::{SolvedShape, checks};
@@ -51,15 +54,14 @@ pub fn report(
 ) -> Result<(String, [SolvedShape; 2]), Failure> {
     session.status.begin("reporting: ".into());
     let runs = &optimization.mesh_runs;
-    let (Some(first), Some(last)) = (runs.first(), optimization.chosen()) else {
+    let reported = optimization.reported();
+    let (Some(first), Some(last)) = (reported.first(), optimization.chosen()) else {
         return Err(Failure::computation("no mesh was begun"));
     };
     let solved = |controls| {
         SolvedShape::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
     };
-    // A start leads to its own end; on growing meshes, the first start leads to the last end.
-    let begun = if matches!(last.part, Part::Start(_)) { last } else { first };
-    let shapes = [solved(&begun.initial_controls)?, solved(&last.report.solution)?];
+    let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
     let mut checks = checks(&last.objective, &shapes[1], session.arguments)?;
     checks.extend(last.standstill(runs, &shapes[1])?);
     let ended = Ended {
@@ -81,7 +83,7 @@ pub fn report(
     let write = |folder: &Folder| {
         files::write_optimization(folder, loaded, &ended, &facts)?;
         if session.arguments.series.vtk_history {
-            vtk_history::write(folder, &optimization.reported())?;
+            vtk_history::write(folder, &reported)?;
         }
         folder.write("report.txt", facts.text(true) + &more)?;
         if let Some(run) = runs.iter().find(|run| !run.is_kept) {

@@ -9,50 +9,50 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::mesh_words::mesh;
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
-use crate::commands::optimize::stages::{MeshStage, Part, stages};
+use crate::commands::optimize::stages::{Attempt, MeshStage, Part, stages};
+use crate::commands::optimize::ways::{beginning, best, chosen};
 use crate::commands::run_kind::RunKind;
 use crate::commands::solved_shape::{ContactObjective, check_ahead, optimized_objective, wanted};
 use contact::error::SceneError;
 use contact::scene::SceneSize;
-use nonsmooth::qp::project;
-use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Termination, Vector};
 use scene_file::MethodName;
 use std::path::Path;
-
-/// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing
-/// about the changes that the finer mesh asks for, since the bodies have followed the surface; steps from a fourteenth
-/// to a third of the first were measured to do about equally well (docs/long_runs.md).
-const LATER_FIRST_STEP: f64 = 0.2;
+use std::sync::Arc;
 
 /// An optimization that has ended.
 pub struct OptimizationRun {
-    /// The runs, one per mesh or one per start, in order; at least one.
+    /// The runs, one per mesh, start or attempt, in order; at least one.
     pub mesh_runs: Vec<MeshRun>,
-    /// Number of runs asked for: meshes, or starts.
+    /// Number of runs asked for.
     pub meshes: usize,
     /// The folder in which it is kept.
     pub folder: Option<RunFolder>,
 }
 
 impl OptimizationRun {
-    /// The run that the optimization is reported by: the last one, or the best one of several starts.
+    /// The run that the optimization is reported by.
     pub fn chosen(&self) -> Option<&MeshRun> {
-        let is_start = |run: &&MeshRun| matches!(run.part, Part::Start(_));
-        let best = self
-            .mesh_runs
-            .iter()
-            .filter(is_start)
-            .min_by(|a, b| violation(a).total_cmp(&violation(b)).then(a.report.value.total_cmp(&b.report.value)));
-        best.or(self.mesh_runs.last())
+        chosen(&self.mesh_runs)
     }
 
-    /// The runs that lead to the one that it is reported by, this one included: all meshes in turn, or one start alone.
+    /// The runs that lead to the one that it is reported by, this one included: all meshes in turn, one start alone, or
+    /// the best attempt and the runs from there.
     pub fn reported(&self) -> Vec<&MeshRun> {
-        if self.mesh_runs.iter().all(|run| matches!(run.part, Part::Mesh(_))) {
-            return self.mesh_runs.iter().collect();
+        let Some(chosen) = self.chosen() else { return vec![] };
+        let runs = self.mesh_runs.iter();
+        match chosen.part {
+            Part::Mesh(_) => runs.collect(),
+            Part::Start(_) | Part::Try(_) => vec![chosen],
+            Part::Whole | Part::Fair => {
+                let attempt = best(runs.clone().filter(|run| run.part.is_attempt()));
+                let later = runs.clone().skip_while(|run| run.part.is_attempt());
+                let until = later.take_while(|run| run.part == Part::Whole || chosen.part == Part::Fair);
+                let is_refined = attempt.is_some_and(|run| run.part == Part::Try(Attempt::Refined));
+                let coarse = runs.clone().filter(|run| is_refined && run.part == Part::Try(Attempt::Coarse));
+                coarse.chain(attempt).chain(until).collect()
+            }
         }
-        self.chosen().into_iter().collect()
     }
 
     /// Whether the time limit or an interruption ended it.
@@ -71,12 +71,6 @@ impl OptimizationRun {
         let limited = |run: &MeshRun| limits.contains(&run.report.termination);
         self.mesh_runs.len() < self.meshes || self.mesh_runs.last().is_some_and(limited)
     }
-}
-
-/// The relative violation of the limits at the end of a run; 0 where all are kept.
-fn violation(run: &MeshRun) -> f64 {
-    let violated = run.report.constraints.iter().filter(|limit| !limit.satisfied);
-    violated.map(|limit| limit.violation).fold(0.0, f64::max)
 }
 
 /// Whether no other mesh may be begun after this run.
@@ -98,7 +92,7 @@ pub fn optimize(
         let within = |source| SceneError::InFile { file: on(later), source: Box::new(source) };
         check_ahead(&later.case, wanted(&later.case), &session.processes).map_err(within)?;
     }
-    let (folder, mut controls) = begin(&first, loaded, given, (RunKind::Optimization, &[]), session)?;
+    let (folder, start) = begin(&first, loaded, given, (RunKind::Optimization, &[]), session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
@@ -106,16 +100,19 @@ pub fn optimize(
     // What starts several processes asks the others to end when one has failed, and must not make them talk.
     watch_interrupts(session.processes.is_alone());
     let optimizer = &loaded.case.optimizer;
-    let mut step = optimizer.first_step.unwrap_or_else(|| first.first_step(&controls));
-    let start = controls.clone();
-    let (mut mesh_runs, mut first) = (Vec::new(), Some(first));
+    let step = optimizer.first_step.unwrap_or_else(|| first.first_step(&start));
+    let (mut mesh_runs, mut first, mut skipped) = (Vec::<MeshRun>::new(), Some(Arc::new(first)), 0);
     for stage in &stages {
-        let objective = first.take().map_or_else(|| optimized_objective(&stage.case, &session.processes), Ok)?;
+        let shared = mesh_runs.last().filter(|_| !matches!(stage.part, Part::Mesh(_))).map(|run| &run.objective);
+        let objective = match first.take().or_else(|| shared.map(Arc::clone)) {
+            Some(objective) => objective,
+            None => Arc::new(optimized_objective(&stage.case, &session.processes)?),
+        };
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
-        if let Some(seed) = stage.part.random_start() {
-            controls = random_start(&objective, &start, step, seed)?;
-        }
-        let beginning = (controls, step);
+        let Some(beginning) = beginning(stage.part, &objective, &mesh_runs, (&start, step))? else {
+            skipped += 1;
+            continue;
+        };
         let limit = optimizer.time_limit.map(left);
         let run = run_on_mesh(objective, stage, beginning, limit, folder.as_ref(), &session.status);
         let run = run.inspect_err(|failure| {
@@ -123,33 +120,18 @@ pub fn optimize(
                 folder.abandon();
             }
         })?;
-        if mesh_runs.is_empty() && !optimizer.continuation.is_empty() {
-            step *= LATER_FIRST_STEP;
-        }
-        controls = run.report.solution.clone();
         let ended = ran_out_of_time(&run);
         mesh_runs.push(run);
         if ended {
             break;
         }
     }
-    Ok(OptimizationRun { mesh_runs, meshes: stages.len(), folder })
+    Ok(OptimizationRun { mesh_runs, meshes: stages.len() - skipped, folder })
 }
 
 /// "the mesh of 12×12×4 bricks"
 fn on(stage: &MeshStage) -> String {
     format!("the mesh of {}", mesh(&stage.case.scene))
-}
-
-/// Largest change of a control at a random start, in first steps: several times the length on which contact changes.
-const RANDOM_CHANGE: f64 = 4.0;
-
-/// The start with random changes, moved into the admissible set; the same for the same seed.
-fn random_start(objective: &ContactObjective, start: &Vector, step: f64, seed: u64) -> Result<Vector, Failure> {
-    let set = objective.solver().problem().admissible.polyhedron();
-    let direction = seeded_direction(start.len(), seed);
-    let moved = start + &direction * (RANDOM_CHANGE * step / direction.amax());
-    project(set, &moved).map_err(|error| Failure::Computation(format!("start {seed}: {error}")))
 }
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is

@@ -1,7 +1,8 @@
-//! The runs of an optimization: one, one per growing mesh, or one per start.
+//! The runs of an optimization: one, one per growing mesh, one per start, or attempts with a run from the best of them.
 
+use crate::commands::optimize::coarse_net::has_coarse_net;
 use nonsmooth::Journal;
-use scene_file::{Case, default_subdomains};
+use scene_file::{Case, MethodName, default_subdomains};
 use std::path::Path;
 
 /// What a run is within its optimization.
@@ -10,7 +11,24 @@ pub enum Part {
     Whole,
     /// One of several growing meshes, by its bricks along the axis that has most.
     Mesh(usize),
-    /// One of several starts, counted from 1: that of the scene, then random ones.
+    /// One of several starts, counted from 1: that of the scene, then others.
+    Start(usize),
+    /// A short attempt; the whole run goes on from the best of all.
+    Try(Attempt),
+    /// From a fairer shape that is as good as the one where the whole run has ended, if there is one.
+    Fair,
+}
+
+/// A way to a shape that is worth to go on from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Attempt {
+    /// All controls from the start.
+    Direct,
+    /// A coarse net of controls from the start.
+    Coarse,
+    /// All controls from where the coarse net has ended, unless the direct way has ended as low.
+    Refined,
+    /// All controls from another start, counted from 2.
     Start(usize),
 }
 
@@ -21,15 +39,17 @@ impl Part {
             Self::Whole => None,
             Self::Mesh(bricks) => Some(format!("stage_{bricks}")),
             Self::Start(number) => Some(format!("start_{number}")),
+            Self::Try(Attempt::Direct) => Some("try_direct".into()),
+            Self::Try(Attempt::Coarse) => Some("try_coarse".into()),
+            Self::Try(Attempt::Refined) => Some("try_refined".into()),
+            Self::Try(Attempt::Start(number)) => Some(format!("try_start_{number}")),
+            Self::Fair => Some("fair".into()),
         }
     }
 
-    /// Number of its random start; none at the start of the scene or where the run before it ended.
-    pub fn random_start(self) -> Option<u64> {
-        match self {
-            Self::Start(number @ 2..) => Some(number as u64),
-            _ => None,
-        }
+    /// Whether it is an attempt.
+    pub fn is_attempt(self) -> bool {
+        matches!(self, Self::Try(_))
     }
 }
 
@@ -41,11 +61,30 @@ pub struct MeshStage {
     pub case: Case,
 }
 
-/// The runs of a case, in order: one per mesh of its continuation, else one per start. On the meshes of a continuation,
-/// the axis with most bricks gets the number asked for, and the others keep their proportion to it.
+/// The attempts of a case: the direct way, coarse to fine in the controls, other starts. None where one run is asked
+/// for or where there is no coarse net, and for functions of the displacements: their runs by cuts are long, and were
+/// measured to end at the same values.
+fn attempts(case: &Case) -> Vec<Attempt> {
+    let optimizer = &case.optimizer;
+    let single = optimizer.single || !optimizer.continuation.is_empty() || case.method == MethodName::Bundle;
+    if single || !case.scene.heights().is_some_and(has_coarse_net) {
+        return vec![];
+    }
+    let starts = (2..=optimizer.starts).map(Attempt::Start);
+    [Attempt::Direct, Attempt::Coarse, Attempt::Refined].into_iter().chain(starts).collect()
+}
+
+/// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of
+/// its continuation, else one per start. On the meshes of a continuation, the axis with most bricks gets the number
+/// asked for, and the others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;
+    let attempts = attempts(case);
+    if !attempts.is_empty() {
+        let parts = attempts.into_iter().map(Part::Try).chain([Part::Whole, Part::Fair]);
+        return parts.map(|part| MeshStage { part, case: case.clone() }).collect();
+    }
     if meshes.is_empty() && starts > 1 {
         return (1..=starts).map(|start| MeshStage { part: Part::Start(start), case: case.clone() }).collect();
     }

@@ -5,8 +5,10 @@ use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
 use crate::commands::mesh_words;
 use crate::commands::numbers::{exact, number, raised};
+use crate::commands::optimize::fairness::bending_of;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
+use crate::commands::optimize::ways::AGREES;
 use crate::commands::report::found_label;
 use crate::commands::shape_facts::{self, is_proved};
 use crate::commands::solved_shape::{SolvedShape, solver_facts};
@@ -34,9 +36,10 @@ fn course(record: &IterationRecord) -> serde_json::Value {
     entry
 }
 
-/// One of several runs: a mesh of a coarse-to-fine optimization, or a start.
+/// One of several runs: a mesh of a coarse-to-fine optimization, a start, an attempt.
 fn stage(run: &MeshRun) -> serde_json::Value {
     json!({
+        "run": run.part.folder(),
         "mesh": run.objective.solver().problem().scene.blocks().map(|blocks| blocks.bricks),
         "objective_start": run.report.start_value,
         "objective": run.report.value,
@@ -73,8 +76,16 @@ const ROUNDING: f64 = 1e-12;
 /// Number of different values of Θ at confirmed ends.
 fn optima(runs: &[MeshRun]) -> usize {
     let decrease = runs.iter().map(|run| run.report.start_value - run.report.value).fold(0.0, f64::max);
-    let confirmed = runs.iter().filter(|run| is_proved(&run.report));
+    // The end of an attempt is none.
+    let confirmed = runs.iter().filter(|run| is_proved(&run.report) && !run.part.is_attempt());
     different(confirmed.map(|run| run.report.value).collect(), decrease)
+}
+
+/// How many attempts have come to the Θ found, of how many; none without attempts.
+fn agreement(runs: &[MeshRun], found: f64) -> Option<[usize; 2]> {
+    let attempts = || runs.iter().filter(|run| run.part.is_attempt());
+    let agreeing = attempts().filter(|run| run.report.value - found <= AGREES * found.abs()).count();
+    Some([agreeing, attempts().count()]).filter(|[_, all]| *all > 0)
 }
 
 /// Number of values that differ by more than runs with this largest decrease resolve.
@@ -196,9 +207,9 @@ impl Ended<'_> {
 
     /// The facts of several runs.
     fn stages(&self) -> Result<Group, Failure> {
-        let several = || self.runs.iter().filter(|run| run.part != Part::Whole);
+        let several = || self.runs.iter().filter(|run| run.part != Part::Whole || self.runs.len() > 1);
         let fact = |run: &MeshRun| {
-            let (report, name) = (&run.report, run.part.folder().unwrap_or_default().replace('_', " "));
+            let (report, name) = (&run.report, run.part.folder().unwrap_or("from the best".into()).replace('_', " "));
             let scene = &run.objective.solver().problem().scene;
             let values = vec![
                 mesh_words::mesh(scene).into(),
@@ -216,8 +227,9 @@ impl Ended<'_> {
         }
         let columns =
             ["bricks", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"].map(str::to_owned);
-        let words = "Pictures, course and certificate are those of the last mesh, or of the best start. The result compares the best of \
-                     several starts with its own start, and the last of several meshes with the start on the first.";
+        let words = "Pictures, course and certificate are those of the last mesh, of the best start, or of the last run from the best \
+                     attempt. The result compares the best of several starts or attempts with its own start, and the last of \
+                     several meshes with the start on the first.";
         Ok(Group { title: "Runs", columns: columns.into(), facts, words: words.into() })
     }
 
@@ -262,6 +274,7 @@ impl Ended<'_> {
             Fact::json("termination", &ending(report))?,
             Fact::json("course", &report.history.iter().map(course).collect::<Vec<_>>())?,
         ];
+        facts.extend(self.ways());
         if self.runs.iter().filter(|run| run.part != Part::Whole).count() > 1 {
             facts.push(
                 Fact::new("optima", "different optima", optima(self.runs), "")
@@ -272,6 +285,27 @@ impl Ended<'_> {
             facts.push(Fact::new("", "runs begun", format!("{} of {}", self.runs.len(), self.meshes), ""));
         }
         Ok(Group::new("Course of the optimization", facts).with_words(proof(report) + "."))
+    }
+
+    /// How attempts agree, and what fairness has changed.
+    fn ways(&self) -> Vec<Fact> {
+        let mut facts = Vec::new();
+        if let Some([agreeing, all]) = agreement(self.runs, self.last.report.value) {
+            let words = format!("{agreeing} of {all}");
+            let meaning = "short runs with all controls, with a coarse net of controls and from other starts, those that came within \
+                           3 % of the Θ found; the whole run begins at the best of them";
+            facts.push(Fact::new("attempts", "attempts that agree", words, "").meaning(meaning));
+            let evaluations: usize = self.runs.iter().map(|run| run.report.counts.evaluations).sum();
+            facts.push(Fact::new("all_evaluations", "evaluations of all runs", evaluations, ""));
+        }
+        let MeshRun { bending_before, objective, report, .. } = self.last;
+        if let (Some(before), Some(after)) = (bending_before, bending_of(objective, &report.solution)) {
+            let words = format!("{} -> {}", number(*before), number(after));
+            let meaning = "of shapes that are as good, the one that bends least was taken: controls that the objective does not see are \
+                           smooth";
+            facts.push(Fact::new("bending", "bending", words, "").meaning(meaning));
+        }
+        facts
     }
 
     /// Solver, warnings, and what was left out.
