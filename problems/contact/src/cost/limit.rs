@@ -145,12 +145,9 @@ impl Limit {
         if excess > ALLOWANCE * self.bound.abs() { excess } else { 0.0 }
     }
 
-    /// The constraint c = ±(value − bound) of the optimizer; a value within 1e-8 of the bound counts as at it where it
-    /// is a function of the shape alone, whose constraint is curved.
+    /// The constraint c = ±(value − bound) of the optimizer; a value within 1e-8 of the bound counts as at it.
     pub(crate) fn constraint(&self, value: f64) -> f64 {
-        let beyond = self.sign() * (value - self.bound);
-        let kept = self.quantity.is_of_shape() && beyond.abs() <= ALLOWANCE * self.bound.abs();
-        if kept { 0.0 } else { beyond }
+        beyond(self.side, value, self.bound)
     }
 
     /// What it asks of the optimizer. States of contact have kinks, which smooth functions of them inherit.
@@ -177,8 +174,18 @@ impl Limit {
 
     /// The factor of the value in the constraint c = ±(value − bound).
     pub(crate) fn sign(&self) -> f64 {
-        if self.side == LimitSide::AtLeast { -1.0 } else { 1.0 }
+        sign(self.side)
     }
+}
+
+fn sign(side: LimitSide) -> f64 {
+    if side == LimitSide::AtLeast { -1.0 } else { 1.0 }
+}
+
+/// c = ±(value − bound); 0 within 1e-8 of the bound.
+pub(crate) fn beyond(side: LimitSide, value: f64, bound: f64) -> f64 {
+    let beyond = sign(side) * (value - bound);
+    if beyond.abs() <= ALLOWANCE * bound.abs() { 0.0 } else { beyond }
 }
 
 /// Refuses a bound that is not finite and > 0.

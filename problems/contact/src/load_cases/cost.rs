@@ -290,7 +290,11 @@ impl OuterFunction for CasesCost {
             let peak = pressures.max();
             if limit.side == LimitSide::AtLeast {
                 let index = range.start + pressures.imax();
-                pieces.push(OutputPiece { constraint, value: limit.bound - peak, weights: unit(index, -1.0) });
+                pieces.push(OutputPiece {
+                    constraint,
+                    value: beyond(limit.side, peak, limit.bound),
+                    weights: unit(index, -1.0),
+                });
                 continue;
             }
             let nodes = pressures.iter().enumerate();
@@ -298,7 +302,7 @@ impl OuterFunction for CasesCost {
             let near = nodes.filter(|(_, pressure)| **pressure == peak || **pressure >= least);
             pieces.extend(near.map(|(index, pressure)| OutputPiece {
                 constraint,
-                value: pressure - limit.bound,
+                value: beyond(limit.side, *pressure, limit.bound),
                 weights: unit(range.start + index, 1.0),
             }));
         }

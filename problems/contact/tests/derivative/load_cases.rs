@@ -67,10 +67,9 @@ fn the_value_is_the_worst_or_the_sum_of_the_single_cases() {
             alone.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value
         });
         let weighted: Vec<f64> = single.iter().zip([1.0, 1.5, 0.9]).map(|(value, weight)| value * weight).collect();
-        for (over, expected) in [
-            (Over::Worst, weighted.iter().copied().fold(0.0, f64::max)),
-            (Over::Sum, weighted.iter().sum::<f64>()),
-        ] {
+        for (over, expected) in
+            [(Over::Worst, weighted.iter().copied().fold(0.0, f64::max)), (Over::Sum, weighted.iter().sum::<f64>())]
+        {
             let all = objective(&scenes(), kind, &norm(), over, &[]);
             let value = all.evaluate(&Request::tight(&shape(&all, 3))).unwrap().into_evaluation().value;
             assert!((value / expected - 1.0).abs() < 1e-10, "{kind:?} {over:?}: {value} {expected}");
@@ -120,7 +119,8 @@ fn the_stacked_jacobian_has_the_rows_that_adjoints_give() {
         assert_eq!(known.outputs, cases.outputs(&states));
         let weights = seeded_direction(known.outputs.len(), 11);
         let dual = cases.output_dual(&at, &states, &weights);
-        let pulled = dual.control + nonsmooth::Coderivative::coderivative(cases, &at, &states, &dual.state).unwrap().element;
+        let pulled =
+            dual.control + nonsmooth::Coderivative::coderivative(cases, &at, &states, &dual.state).unwrap().element;
         let product = known.jacobian.tr_mul(&weights);
         assert!((&pulled - &product).norm() < 1e-7 * product.norm(), "{measure:?} {kind:?}");
         // With two active cases, the model of the worst needs the curvature of both.
@@ -160,7 +160,12 @@ fn limits() -> Vec<Limit> {
         one(LimitedQuantity::Volume, LimitSide::AtMost, 990.0, None),
         one(field(FieldMeasure::Compliance), LimitSide::AtMost, 1e5, Some("right")),
         one(LimitedQuantity::PeakPressure, LimitSide::AtMost, 9000.0, None),
-        one(field(FieldMeasure::PeakStress { region: Region::WHOLE, without_held: true }), LimitSide::AtMost, 3000.0, None),
+        one(
+            field(FieldMeasure::PeakStress { region: Region::WHOLE, without_held: true }),
+            LimitSide::AtMost,
+            3000.0,
+            None,
+        ),
         one(field(displacement(false)), LimitSide::AtMost, 0.1, Some("left")),
         one(field(displacement(true)), LimitSide::AtLeast, -0.5, Some("left")),
         one(LimitedQuantity::LoadedArea { pressure: 2500.0 }, LimitSide::AtLeast, 60.0, Some("still")),
