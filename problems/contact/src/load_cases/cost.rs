@@ -1,6 +1,8 @@
 //! The objective of all cases as a function of their outputs, with the limits that are functions of the pressures.
 
-use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, check_bound};
+use crate::cost::{
+    FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, beyond, check_bound,
+};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
 use nonsmooth::composite::{OuterFunction, OuterPart, OutputPiece};
