@@ -123,7 +123,11 @@ mod tests {
         let text = include_str!("../../../scenes/thin_layer.toml");
         let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
         let mut case = Case::new(&file, Path::new("")).expect("an example");
-        assert!(stages(&case).len() == 1 && stages(&case)[0].part == Part::Whole);
+        let parts = |case: &Case| stages(case).iter().map(|stage| stage.part).collect::<Vec<_>>();
+        let [direct, coarse, refined] = [Attempt::Direct, Attempt::Coarse, Attempt::Refined].map(Part::Try);
+        assert_eq!(parts(&case), [direct, coarse, refined, Part::Whole, Part::Fair]);
+        case.optimizer.single = true;
+        assert_eq!(parts(&case), [Part::Whole]);
         case.optimizer.continuation = vec![6, 12, 25];
         let blocks = |stage: &MeshStage| *stage.case.scene.blocks().expect("a block");
         let meshes: Vec<_> =
