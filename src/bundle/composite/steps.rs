@@ -132,9 +132,10 @@ fn stacked(outputs: &Matrix, constraints: Option<&Matrix>) -> Matrix {
     all
 }
 
-/// Whether Jacobians at other points tell the curvature of the constraints: they are smooth, or functions of the outputs.
+/// Whether Jacobians at other points tell the curvature of some constraints: of smooth ones, and of functions of the
+/// outputs.
 pub(super) fn are_curved(outer: &dyn OuterFunction, constraints: Option<&Constraints>) -> bool {
-    constraints.is_some_and(|found| found.are_smooth() || !outer.constraint_kinds().is_empty())
+    constraints.is_some_and(|found| found.has_smooth() || !outer.constraint_kinds().is_empty())
 }
 
 /// The weights of the outputs above the multipliers of the constraints, in the units of the constraints. A piece of a

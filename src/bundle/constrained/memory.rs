@@ -234,9 +234,9 @@ impl Constraints {
         self.revision
     }
 
-    /// Whether all constraints are smooth: their Jacobians at other points then tell their curvature.
-    pub(crate) fn are_smooth(&self) -> bool {
-        !self.kinds.contains(&ConstraintKind::Nonsmooth)
+    /// Whether some constraints are smooth: their Jacobians at other points tell their curvature.
+    pub(crate) fn has_smooth(&self) -> bool {
+        self.kinds.iter().any(|kind| *kind != ConstraintKind::Nonsmooth)
     }
 
     /// What the constraints ask for.

@@ -20,9 +20,6 @@ const ROOM: f64 = 1e-6;
 /// The violation is stationary where its linearization falls by at most this share within reach.
 const STATIONARY: f64 = 1e-6;
 
-/// Longer steps in a row that hardly reduce the violation before no longer one is tried.
-const MAX_IDLE: usize = 2;
-
 /// The set of the subproblems at a center.
 #[derive(Debug)]
 pub(crate) struct WorkingSet {
@@ -176,7 +173,7 @@ fn relax(
     let steepest = slopes.iter().zip(&offsets).filter(|(_, offset)| **offset <= 0.5 * violation);
     let slope = steepest.map(|(slope, _)| norm.dual_length(slope)).fold(0.0, f64::max);
     let mut weight = WEIGHT * caution * if slope > 0.0 { slope * slope } else { 1.0 } / violation;
-    let mut idle_passes = 0;
+    let mut first = true;
     let mut best = (violation, false, 0.0);
     for _ in 0..=MAX_DECREASES {
         let metric = norm.weighted(weight);
@@ -198,13 +195,11 @@ fn relax(
         if gained > 0.0 {
             best = (left, false, norm.length(&solution.step));
         }
-        // The relaxation is small enough, or no longer step reduces it much: where many constraints are active, all of
-        // them fall slowly at first.
-        let idle = best.0 < 0.99 * violation && gained <= 0.1 * best.0;
-        idle_passes = if idle { idle_passes + 1 } else { 0 };
-        if best.0 <= 0.1 * violation || caution > 1.0 || idle_passes > MAX_IDLE {
+        // The relaxation is small enough, or no longer step reduces it much.
+        if best.0 <= 0.1 * violation || caution > 1.0 || !first && best.0 < 0.99 * violation && gained <= 0.1 * best.0 {
             return best;
         }
+        first = false;
         weight /= 10.0;
     }
     best

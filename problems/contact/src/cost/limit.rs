@@ -50,7 +50,7 @@ pub struct Limit {
 
 /// Share of a bound by which a quantity that keeps it may be off. Steps along a curved constraint miss it by a little;
 /// steps that do nothing but remove the rest would cost a state each.
-const ALLOWANCE: f64 = 1e-8;
+const ALLOWANCE: f64 = 1e-6;
 
 impl LimitSide {
     /// Its name in JSON, and in words with spaces.
@@ -135,7 +135,7 @@ impl Limit {
         self.case.as_deref().is_none_or(|own| own == case)
     }
 
-    /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-8 of the bound.
+    /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-6 of the bound.
     pub fn excess(&self, value: f64) -> f64 {
         let excess = match self.side {
             LimitSide::AtMost => value - self.bound,
@@ -145,12 +145,13 @@ impl Limit {
         if excess > ALLOWANCE * self.bound.abs() { excess } else { 0.0 }
     }
 
-    /// The constraint c = ±(value − bound) of the optimizer; a value within 1e-8 of the bound counts as at it.
+    /// The constraint c = ±(value − bound) of the optimizer; a value within 1e-6 of the bound counts as at it.
     pub(crate) fn constraint(&self, value: f64) -> f64 {
         beyond(self.side, value, self.bound)
     }
 
-    /// What it asks of the optimizer. States of contact have kinks, which smooth functions of them inherit.
+    /// What it asks of the optimizer. Smooth functions of the contact state have kinks where the state has them, which
+    /// points on the way rarely meet: their curvature between kinks is worth more.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for a quantity with kinks that must be at its bound, and for bounds that are not
@@ -168,6 +169,7 @@ impl Limit {
                 let allowed = "at_most or at_least alone: a function of the contact state has kinks";
                 Err(SceneError::out_of_range(field(), self.bound, allowed))
             }
+            (false, _) if self.quantity.is_smooth() => Ok(ConstraintKind::Smooth),
             (false, _) => Ok(ConstraintKind::Nonsmooth),
         }
     }
@@ -182,7 +184,7 @@ fn sign(side: LimitSide) -> f64 {
     if side == LimitSide::AtLeast { -1.0 } else { 1.0 }
 }
 
-/// c = ±(value − bound); 0 within 1e-8 of the bound.
+/// c = ±(value − bound); 0 within 1e-6 of the bound.
 pub(crate) fn beyond(side: LimitSide, value: f64, bound: f64) -> f64 {
     let beyond = sign(side) * (value - bound);
     if beyond.abs() <= ALLOWANCE * bound.abs() { 0.0 } else { beyond }
