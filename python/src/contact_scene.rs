@@ -9,7 +9,10 @@ use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::contact_objective::ContactObjective;
+use contact::contact_shape::AnyState;
 use contact::error::SceneError;
+use contact::fields::Fields;
+use contact::load_cases::CaseStates;
 use contact::plausibility::Warning;
 use contact::solvers::{Processes, Wanted};
 use contact::standstill::standstill;
@@ -180,33 +183,8 @@ impl ContactScene {
         result.set_item("unit", objective.unit())?;
         result.set_item("norm_in_mpa", objective.norm_in_mpa(evaluation.value))?;
         result.set_item("error_bound", evaluation.error_bound)?;
-        let (worst, weighted) = (objective.worst(&states), objective.weighted_values(&states));
-        let cases = PyDict::new(py);
-        for (case, (warnings, fields)) in checked.iter().enumerate() {
-            let (own, state) = (PyDict::new(py), &states[case]);
-            let grid = grid_of(objective.cases().case(case).problem());
-            for result in [Some(&own), Some(&result).filter(|_| case == worst)].into_iter().flatten() {
-                result.set_item("warnings", in_words(warnings))?;
-                result.set_item("total_force", state.forces.total_normal_force())?;
-                result.set_item("residual", state.forces.residuals.largest())?;
-                result.set_item("weakly_active", convert::json(&state.forces.kink)?)?;
-                StateArrays { fields, forces: &state.forces, grid }.set(result)?;
-            }
-            own.set_item("weighted_value", weighted[case])?;
-            cases.set_item(objective.cases().name(case), own)?;
-        }
-        result.set_item("cases", cases)?;
-        let limits = PyList::empty(py);
-        for (limit, value) in objective.limits().zip(objective.limited_values(&controls, &states)) {
-            let own = PyDict::new(py);
-            own.set_item("quantity", limit.quantity.name())?;
-            own.set_item("case", limit.case.clone())?;
-            own.set_item(limit.side.name(), limit.bound)?;
-            own.set_item("value", value)?;
-            own.set_item("violation", limit.excess(value))?;
-            limits.append(own)?;
-        }
-        result.set_item("limits", limits)?;
+        set_cases(&result, objective, &states, &checked)?;
+        set_limits(&result, objective, &controls, &states)?;
         Ok(result)
     }
 
@@ -298,6 +276,52 @@ impl ContactScene {
             (Err(error), None) => Err(error.into()),
         }
     }
+}
+
+/// Adds the states of all cases by their names, and that of the worst case at the top.
+fn set_cases(
+    result: &Bound<'_, PyDict>,
+    objective: &ContactObjective,
+    states: &CaseStates<AnyState>,
+    checked: &[(Vec<Warning>, Fields)],
+) -> PyResult<()> {
+    let py = result.py();
+    let (worst, weighted) = (objective.worst(states), objective.weighted_values(states));
+    let cases = PyDict::new(py);
+    for (case, (warnings, fields)) in checked.iter().enumerate() {
+        let (own, state) = (PyDict::new(py), &states[case]);
+        let grid = grid_of(objective.cases().case(case).problem());
+        for result in [Some(&own), Some(result).filter(|_| case == worst)].into_iter().flatten() {
+            result.set_item("warnings", in_words(warnings))?;
+            result.set_item("total_force", state.forces.total_normal_force())?;
+            result.set_item("residual", state.forces.residuals.largest())?;
+            result.set_item("weakly_active", convert::json(&state.forces.kink)?)?;
+            StateArrays { fields, forces: &state.forces, grid }.set(result)?;
+        }
+        own.set_item("weighted_value", weighted[case])?;
+        cases.set_item(objective.cases().name(case), own)?;
+    }
+    result.set_item("cases", cases)
+}
+
+/// Adds the limits with the values of their quantities.
+fn set_limits(
+    result: &Bound<'_, PyDict>,
+    objective: &ContactObjective,
+    controls: &Vector,
+    states: &CaseStates<AnyState>,
+) -> PyResult<()> {
+    let limits = PyList::empty(result.py());
+    for (limit, value) in objective.limits().zip(objective.limited_values(controls, states)) {
+        let own = PyDict::new(result.py());
+        own.set_item("quantity", limit.quantity.name())?;
+        own.set_item("case", limit.case.clone())?;
+        own.set_item(limit.side.name(), limit.bound)?;
+        own.set_item("value", value)?;
+        own.set_item("violation", limit.excess(value))?;
+        limits.append(own)?;
+    }
+    result.set_item("limits", limits)
 }
 
 /// What is implausible about the shape at which a run has ended, and why it stood still if it did.

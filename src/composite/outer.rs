@@ -34,9 +34,9 @@ pub trait OuterFunction {
         vec![OuterPart { value: self.value(outputs), gradient: self.subgradient(outputs) }]
     }
 
-    /// Σ λ_k Gᵀ∇²h_k G, n × n, for weights λ_k ≥ 0 of the [`parts`](Self::parts), if these are smooth: the subproblem is
-    /// then solved by Newton's method, with all parts at once. The default is the [`curvature`](Self::curvature) of h.
-    /// The answer must not be a matrix for some outputs and none for others.
+    /// Σ λ_k Gᵀ∇²h_k G, n × n, for weights λ_k ≥ 0 of the [`parts`](Self::parts), if these are smooth: the subproblem
+    /// is then solved by Newton's method, with all parts at once. The default is the [`curvature`](Self::curvature) of
+    /// h. The answer must not be a matrix for some outputs and none for others.
     fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, _weights: &[f64]) -> Option<Matrix> {
         self.curvature(outputs, jacobian)
     }

@@ -16,9 +16,9 @@ const DEFAULT_EXPONENT: f64 = 8.0;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSection {
-    /// What is limited: the largest contact pressure (MPa); the loaded area ∫min(σ/σ₀, 1)dA (mm²); the largest von Mises
-    /// stress or its p-norm in a region (MPa); the largest displacement of a region (mm); the compliance (N mm); the
-    /// volume of the lower body (mm³), or the volume over that at the start.
+    /// What is limited: the largest contact pressure (MPa); the loaded area ∫min(σ/σ₀, 1)dA (mm²); the largest von
+    /// Mises stress or its p-norm in a region (MPa); the largest displacement of a region (mm); the compliance (N mm);
+    /// the volume of the lower body (mm³), or the volume over that at the start.
     pub quantity: QuantityName,
     /// Its largest value, in its unit. Default none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,8 @@ pub struct LimitSection {
     /// For `displacement`: the component, with its sign. Default the length of the displacement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub component: Option<AxisName>,
-    /// For `stress`: leaves out the cells that have a node held by a support, where stresses concentrate. Default false.
+    /// For `stress`: leaves out the cells that have a node held by a support, where stresses concentrate. Default
+    /// false.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_held: Option<bool>,
 }

@@ -21,8 +21,8 @@ const DEFAULT_STRESS_EXPONENT: f64 = 8.0;
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectiveSection {
     /// Of the contact pressures: integral or sum of powers, largest value, mean squared deviation from a wanted
-    /// pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, its largest
-    /// value, largest displacement, compliance. Of the shape: the volume of the lower body.
+    /// pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, its
+    /// largest value, largest displacement, compliance. Of the shape: the volume of the lower body.
     pub measure: MeasureName,
     /// With several cases: the largest of their measures, each times the weight of its case, or the sum.
     pub over: Over,
@@ -50,7 +50,8 @@ pub struct ObjectiveSection {
     /// displacement.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<AxisName>,
-    /// For `stress`: leaves out the cells that have a node held by a support, where stresses concentrate. Default false.
+    /// For `stress`: leaves out the cells that have a node held by a support, where stresses concentrate. Default
+    /// false.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub without_held: Option<bool>,
 }

@@ -247,9 +247,12 @@ fn objectives_are_read_or_refused_with_the_field() {
         "measure = \"stress-norm\"",
         "measure = \"stress-norm\"\nexponent = 3.0\nregion = { body = \"upper\", x1 = [0.0, 5.0] }",
         "measure = \"compliance\"",
+        "measure = \"stress\"\nwithout_held = true",
+        "measure = \"displacement\"\ncomponent = \"u3\"\nregion = { face = \"top\" }",
+        "measure = \"volume\"",
     ] {
         let case = with_objective(section).expect(section);
-        let is_of_displacements = section.contains("stress") || section.contains("compliance");
+        let is_of_displacements = ["stress", "compliance", "displacement"].iter().any(|name| section.contains(name));
         assert_eq!(case.objective.is_of_displacements(), is_of_displacements);
         let expected = if is_of_displacements { MethodName::Bundle } else { MethodName::Composite };
         assert_eq!(case.method, expected, "{section}");
@@ -262,7 +265,10 @@ fn objectives_are_read_or_refused_with_the_field() {
         ("weight = \"edges\"", ["objective.weight = \"edges\"", "\"area\", \"nodes\""]),
         ("measure = \"compliance\"\nexponent = 3.0", ["objective.exponent = 3", "stress norm"]),
         ("measure = \"stress-norm\"\npressure = 3.0", ["objective.pressure = 3", "open area"]),
-        ("measure = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }", ["objective.region", "stress norm"]),
+        (
+            "measure = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }",
+            ["objective.region", "stresses and displacements"],
+        ),
         ("measure = \"stress-norm\"\nregion = { x2 = [3.0, 1.0] }", ["objective.region.x2 = [3, 1]", "smaller"]),
         ("measure = \"stress-norm\"\nregion = { x4 = [3.0, 1.0] }", ["objective.region.x4", "allowed: body, x1"]),
         ("measure = \"stress-norm\"\nregion = { body = \"both\" }", ["objective.region.body = \"both\"", "\"lower\""]),
@@ -279,7 +285,7 @@ fn objectives_are_read_or_refused_with_the_field() {
             ["none.csv", "No such file"],
         ),
         (
-            "measure = \"compliance\"\n[optimizer]\nmethod = \"composite\"",
+            "measure = \"stress\"\n[optimizer]\nmethod = \"composite\"",
             ["optimizer.method = composite", "allowed: \"bundle\" with this objective"],
         ),
     ] {
@@ -310,6 +316,7 @@ fn accuracy_on_demand_is_refused_where_the_objective_can_vanish() {
         "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100\" }",
         "measure = \"open-area\"\npressure = 3.0",
         "measure = \"compliance\"",
+        "measure = \"displacement\"\ncomponent = \"u3\"\nregion = { face = \"top\" }",
     ] {
         let case = |accuracy: &str| with_objective(&format!("{objective}\n[optimizer]\naccuracy = \"{accuracy}\""));
         assert!(case("tightest").is_ok(), "{objective}");

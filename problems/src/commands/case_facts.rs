@@ -50,7 +50,8 @@ fn vector(vector: [f64; 3]) -> String {
     format!("({})", vector.map(number).join(", "))
 }
 
-/// The cases of some shapes: a table, and the list `cases` in JSON for the last shape. `proof`: that of an optimization.
+/// The cases of some shapes: a table, and the list `cases` in JSON for the last shape. `proof`: that of an
+/// optimization.
 pub fn cases(
     objective: &ContactObjective,
     scenes: &[CaseScene],

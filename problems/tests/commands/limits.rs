@@ -29,9 +29,18 @@ fn limits_that_mean_nothing_are_refused_by_their_field() {
         (vec!["--set", "limit=[{quantity=\"peak-pressure\", at_most=0}]"], "limit[0].at_most"),
         (vec!["--set", "limit=[{quantity=\"peak-pressure\", at_most=nan}]"], "limit[0].at_most"),
         (vec!["--set", "limit=[{quantity=\"peak-pressure\"}]"], "limit[0].at_most"),
-        (vec!["--set", "limit=[{quantity=\"volume\", at_most=1}]"], "limit[0].quantity"),
+        (vec!["--set", "limit=[{quantity=\"volume\", at_most=-1}]"], "limit[0].at_most"),
+        (vec!["--set", "limit=[{quantity=\"volume\", at_most=1, case=\"one\"}]"], "limit[0].case"),
+        (vec!["--set", "limit=[{quantity=\"stress\", at_most=1, exponent=8}]"], "limit[0].exponent"),
+        (vec!["--set", "limit=[{quantity=\"loaded-area\", at_least=1}]"], "limit[0].pressure"),
+        (vec!["--set", "limit=[{quantity=\"stress\", at_most=1, region={body=\"lowr\"}}]"], "lower"),
+        (vec!["--set", "limit=[{quantity=\"displacement\", at_most=1, region={face=\"nose\"}}]"], "region.face"),
+        (vec!["--set", "limit=[{quantity=\"stress\", at_most=1, at_least=1}]"], "limit[0].at_least"),
+        (vec!["--set", "case=[{name=\"\"}]"], "case[0].name"),
+        (vec!["--set", "case=[{name=\"a\"}, {name=\"a\"}]"], "case[1].name"),
+        (vec!["--set", "case=[{name=\"a\", upper={}}]"], "case[0].upper"),
+        (vec!["--set", "case=[{name=\"a\", loads=[]}]"], "case[0].loads"),
         (vec!["--set", &format!("limit=[{one}, {one}]")], "limit[1].quantity"),
-        (vec!["--objective", "compliance", "--set", &format!("limit=[{one}]")], "limit[0].quantity"),
     ] {
         let refused = refusal(&[&["evaluate"], arguments.as_slice()].concat());
         assert!(refused.contains(words), "{arguments:?}: {refused}");

@@ -15,6 +15,7 @@ fn binary(name: &str) -> Option<&'static str> {
 }
 
 mod binaries;
+mod cases;
 mod certificates;
 mod compare;
 mod contact3d;

@@ -72,7 +72,7 @@ fn alone_on(open: fn() -> Opened, options: &[&str]) -> Value {
 
 #[test]
 fn several_processes_find_what_one_finds_to_the_last_bit() {
-    let optimize = ["optimize", "--mesh", "4", "--max-evaluations", "5", "--solver"];
+    let optimize = ["optimize", "--single", "--mesh", "4", "--max-evaluations", "5", "--solver"];
     let commands = [
         ["evaluate", "--diagnose", "--mesh", "4", "--solver", "auto"].as_slice(),
         &[&optimize[..], &["newton"]].concat(),

@@ -13,7 +13,8 @@ fn shaped(kind: &str, gain: f64) {
     assert_eq!(result["termination"]["confirmed"], true, "{kind}: {}", result["termination"]);
     assert!(result["evaluations"].as_u64() <= Some(MOST_EVALUATIONS), "{kind}: {}", result["evaluations"]);
     let volume = &result["limits"][0];
-    assert!((number(&volume["end"]) - 1.0).abs() < 1e-7 && volume["active"] == true, "{kind}: {volume}");
+    // A limit is kept to 1e-6 of its bound.
+    assert!((number(&volume["end"]) - 1.0).abs() < 1.001e-6 && volume["active"] == true, "{kind}: {volume}");
     let found = number(&result["objective_start"]) / number(&result["objective"]);
     assert!((found / gain - 1.0).abs() < 0.01, "{kind}: {found}");
 }

@@ -81,6 +81,9 @@ impl Composite {
         let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
+                if at.restoring() {
+                    return Ok(Answer::Silent);
+                }
                 (weight, raised) = (weight * 10.0, true);
                 continue;
             };

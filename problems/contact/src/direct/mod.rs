@@ -16,6 +16,7 @@ mod diagnosis;
 mod displacement_load;
 mod displacement_tangents;
 mod force_rounding;
+mod forces;
 mod newton;
 mod recovery;
 #[cfg(feature = "interior-point")]

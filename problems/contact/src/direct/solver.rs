@@ -13,11 +13,10 @@ use crate::direct::displacement_tangents::displacement_tangents;
 use crate::direct::force_rounding::change_of_forces;
 use crate::direct::newton::FLOOR_REACHED;
 use crate::direct::tangents::{CondensedTangents, tangents};
-use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
-    Configuration, ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
-    Positions, Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
+    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Positions, Sensitivities,
+    SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
@@ -408,39 +407,6 @@ fn at_rest(contact: &CompliantContact) -> CondensedSolution {
     let linearizations = contact.linearize(&contact.residual(&unknowns, 0.0).1);
     let (forces, displacement) = contact.dimensional(&unknowns);
     CondensedSolution { unknowns, displacement, forces, linearizations }
-}
-
-impl DirectState {
-    fn forces(&self) -> ContactForces {
-        let (contact, solution) = (&self.contact, &self.solution);
-        let boundary = &contact.problem.boundary;
-        let (residual, arguments) = contact.residual(&solution.unknowns, 0.0);
-        let status = boundary.points.iter().zip(&solution.linearizations);
-        let status = status.map(|(point, linearization)| linearization.status(point)).collect();
-        let length = contact.unit * contact.load;
-        let jumps: Vec<f64> = contact.jumps(&solution.unknowns, 0.0).iter().map(|jump| jump * length).collect();
-        let imbalance = contact.bodies.iter().map(|body| body.imbalance(&solution.forces)).fold(0.0, f64::hypot);
-        let residuals = Residuals {
-            equilibrium: imbalance / contact.load,
-            newton: norm(&residual),
-            ..law_residuals(boundary, &solution.forces, &jumps, 1.0 / contact.unit, contact.load)
-        };
-        let mut forces = solution.forces.clone();
-        for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
-            if *linearization == Linearization::Open {
-                forces[point.rows()].fill(0.0);
-            }
-        }
-        ContactForces::unpack(
-            boundary,
-            &contact.rows,
-            &forces,
-            &jumps,
-            status,
-            residuals,
-            Kink::of(boundary, &arguments),
-        )
-    }
 }
 
 /// The proof that there is no equilibrium, where one is found.

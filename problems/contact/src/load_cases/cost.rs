@@ -9,8 +9,9 @@ use nonsmooth::composite::{OuterFunction, OuterPart, OutputPiece};
 use nonsmooth::{ConstraintKind, Matrix, Vector};
 use std::ops::Range;
 
-/// Pressures over the bound, or over the largest pressure where that is less, from which nodes are pieces of the limited
-/// peak: a step of the optimizer may make any of them the largest, and takes load from all that are beyond the bound.
+/// Pressures over the bound, or over the largest pressure where that is less, from which nodes are pieces of the
+/// limited peak: a step of the optimizer may make any of them the largest, and takes load from all that are beyond the
+/// bound.
 const NEAR_PEAK: f64 = 0.5;
 
 /// What is minimised of one case.

@@ -63,7 +63,8 @@ mod tests {
             let controls = Vector::from_vec(heights.map(|(x, y)| height(x, y)).collect());
             controls.dot(&(bending(&surface, size) * &controls))
         };
-        assert!(energy(&|x, y| 2.0 + 0.3 * x - 0.7 * y) < 1e-15);
+        // What is left is the rounding of differences of heights, beside some 70 of the bowl.
+        assert!(energy(&|x, y| 2.0 + 0.3 * x - 0.7 * y) < 1e-12);
         // (2² + 2·0.5² + 0.6²)·15 mm², but for the half intervals at the edges.
         let exact = (4.0 + 0.5 + 0.36) * 15.0;
         let found = energy(&|x, y| x * x + 0.5 * x * y + 0.3 * y * y);

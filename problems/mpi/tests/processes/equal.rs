@@ -43,7 +43,7 @@ fn what_several_processes_use_is_told() {
 }
 
 /// Options of a short optimization.
-const RUN: [&str; 6] = ["optimize", "--mesh", "4", "--solver", "newton", "--json"];
+const RUN: [&str; 7] = ["optimize", "--single", "--mesh", "4", "--solver", "newton", "--json"];
 
 /// Files of a run that hold no times.
 const FILES: [&str; 5] =

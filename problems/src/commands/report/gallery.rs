@@ -29,8 +29,8 @@ pub struct ShownShape<'a> {
 }
 
 impl<'a> ShownShape<'a> {
-    /// A solved shape in one of its load cases, with the beginning of its files' names and what it is called, and with as
-    /// many fields as the outputs show. Files for ParaView hold the sensitivity of the objective to the position of
+    /// A solved shape in one of its load cases, with the beginning of its files' names and what it is called, and with
+    /// as many fields as the outputs show. Files for ParaView hold the sensitivity of the objective to the position of
     /// every contact node as well, which takes an adjoint.
     pub fn new(
         objective: &ContactObjective,

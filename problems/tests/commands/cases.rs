@@ -1,0 +1,122 @@
+//! Load cases of scene files, from the file to the report, on a small mesh of Example 5.2.
+
+use crate::binary;
+use serde_json::Value;
+use std::path::Path;
+use testset::kit::{json, scratch, text};
+
+fn contact3d() -> &'static str {
+    binary("contact3d").unwrap()
+}
+
+/// Example 5.2 pulled to either side and not at all, with its sphere moved along.
+fn scene(folder: &Path, more: &str) -> String {
+    let base = include_str!("../../scenes/hertz.toml");
+    let case = |(name, pull): (&str, f64)| {
+        let loads = format!(
+            "[{{ face = \"top\", traction = [0.0, 0.0, -2000.0] }}, \
+             {{ face = \"x1-max\", traction = [{pull:?}, 0.0, -2000.0] }}]"
+        );
+        let offset = pull / 1000.0;
+        format!("[[case]]\nname = \"{name}\"\noffset = [{offset:?}, 0.0, 0.0]\nupper = {{ loads = {loads} }}\n")
+    };
+    let cases: Vec<String> = [("left", -500.0), ("still", 0.0), ("right", 500.0)].into_iter().map(case).collect();
+    let path = folder.join("cases.toml");
+    std::fs::write(&path, format!("{base}\n{}\n{more}", cases.join("\n"))).unwrap();
+    text(&path).to_owned()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+#[test]
+fn the_worst_of_three_cases_is_optimized_with_two_of_them_active() {
+    let folder = scratch();
+    let scene = scene(folder.path(), "");
+    let found = json(contact3d(), &[&scene, "--single", "--mesh", "6", "--subdomains", "2", "--json"]);
+    assert_eq!(found["termination"]["confirmed"], true, "{}", found["termination"]);
+    // 13 were measured on 12³ bricks.
+    assert!(found["evaluations"].as_u64() <= Some(25), "{}", found["evaluations"]);
+    let cases = found["cases"].as_array().unwrap();
+    let names: Vec<&str> = cases.iter().map(|case| case["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["left", "still", "right"]);
+    let multipliers: Vec<f64> = cases.iter().map(|case| number(&case["multiplier"])).collect();
+    assert!((multipliers.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{multipliers:?}");
+    assert!(multipliers.iter().filter(|multiplier| **multiplier > 1e-3).count() >= 2, "{multipliers:?}");
+    let worst = cases.iter().map(|case| number(&case["weighted_measure"])).fold(0.0, f64::max);
+    assert!((worst / number(&found["objective"]) - 1.0).abs() < 1e-9, "{worst}");
+    for case in cases {
+        // Loads, contact and supports of each body are in balance.
+        for body in case["resultants"]["bodies"].as_array().unwrap() {
+            let mut sum = [0.0; 3];
+            let supports = body["supports"].as_array().unwrap().iter().map(|support| &support["force"]);
+            for force in [&body["loads"], &body["contact"]].into_iter().chain(supports) {
+                (0..3).for_each(|axis| sum[axis] += number(&force[axis]));
+            }
+            let load = number(&case["total_normal_force"]);
+            assert!(sum.iter().all(|entry| entry.abs() < 1e-8 * load), "{sum:?}");
+        }
+        assert!(number(&case["resultants"]["largest_stress"]["value"]) > 1000.0, "{case}");
+    }
+}
+
+#[test]
+fn equal_cases_are_solved_once_and_worth_a_single_one() {
+    let folder = scratch();
+    let loads = "load_factor = 1.5";
+    let path = folder.path().join("equal.toml");
+    let base = include_str!("../../scenes/hertz.toml");
+    let value = |cases: &str| {
+        std::fs::write(&path, format!("{base}\n{cases}")).unwrap();
+        json(contact3d(), &[text(&path), "evaluate", "--mesh", "4", "--json"])
+    };
+    let single = value(&format!("[[case]]\nname = \"a\"\n{loads}\n"));
+    let three = value(&["a", "b", "c"].map(|name| format!("[[case]]\nname = \"{name}\"\n{loads}\n")).join("\n"));
+    assert_eq!(single["objective"], three["objective"]);
+    assert_eq!(three["cases"].as_array().map(Vec::len), Some(1));
+    assert_eq!(three["cases"][0]["equal"], serde_json::json!(["b", "c"]));
+}
+
+#[test]
+fn limits_hold_in_all_cases_or_in_one_and_say_so() {
+    let folder = scratch();
+    let limits = "[[limit]]\nquantity = \"stress\"\nat_most = 5000.0\n\n\
+                  [[limit]]\nquantity = \"displacement\"\ncomponent = \"u3\"\nat_least = -0.2\ncase = \"left\"\n";
+    let scene = scene(folder.path(), limits);
+    let found = json(contact3d(), &[&scene, "evaluate", "--mesh", "4", "--json"]);
+    let limits = found["limits"].as_array().unwrap();
+    let words: Vec<(&str, &str)> =
+        limits.iter().map(|limit| (limit["quantity"].as_str().unwrap(), limit["case"].as_str().unwrap())).collect();
+    assert_eq!(words, [("stress", "left"), ("stress", "still"), ("stress", "right"), ("displacement", "left")]);
+    for (limit, case) in limits.iter().zip(found["cases"].as_array().unwrap()) {
+        assert_eq!(limit["end"], case["resultants"]["largest_stress"]["value"]);
+    }
+}
+
+#[test]
+fn a_certificate_over_cases_is_computed_again_and_a_run_goes_on() {
+    let folder = scratch();
+    let scene = scene(folder.path(), "[[limit]]\nquantity = \"peak-pressure\"\nat_most = 9000.0\ncase = \"still\"\n");
+    let out = folder.path().join("out");
+    let options = ["--single", "--mesh", "4", "--out", text(&out), "--json"];
+    json(contact3d(), &[&[scene.as_str(), "--max-evaluations", "3"], &options[..]].concat());
+    for file in ["pressure_optimal_case_1.csv", "pressure_optimal_case_3.csv", "report.html"] {
+        assert!(out.join(file).exists(), "{file}");
+    }
+    let resumed = json(contact3d(), &["--resume", text(&out), "--max-evaluations", "60", "--json"]);
+    assert_eq!(resumed["resumed_evaluations"], 3);
+    assert_eq!(resumed["termination"]["confirmed"], true, "{}", resumed["termination"]);
+    let again = json(contact3d(), &[&scene, "recheck", text(&out), "--mesh", "4", "--json"]);
+    assert_eq!(again["agrees"], true, "{again}");
+}
+
+#[test]
+fn the_lug_states_its_stresses_in_every_case() {
+    let scene = format!("{}/scenes/lug_cases.toml", env!("CARGO_MANIFEST_DIR"));
+    let found = json(contact3d(), &[&scene, "evaluate", "--json"]);
+    let stresses: Vec<f64> =
+        found["limits"].as_array().unwrap()[1..].iter().map(|limit| number(&limit["end"])).collect();
+    assert!((stresses[0] / 3221.02 - 1.0).abs() < 1e-5, "{stresses:?}");
+    assert_eq!(stresses.len(), 3);
+}
