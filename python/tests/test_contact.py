@@ -222,3 +222,19 @@ def test_a_forked_process_says_that_it_cannot_solve():
             os._exit(7 if "spawn" in str(error) else 1)
         os._exit(2)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+
+
+def test_the_worst_of_some_cases_is_the_objective():
+    cases = [{"name": "a"}, {"name": "b", "load_factor": 1.2, "weight": 0.4}, {"name": "c", "friction": 0.0}]
+    limits = [{"quantity": "peak-pressure", "at_most": 5000.0, "case": "b"}, {"quantity": "stress", "at_most": 4000.0}]
+    scene = contact.Scene.from_toml(SCENES / "hertz.toml", mesh=SMALL, case=cases, limit=limits)
+    state = scene.evaluate()
+    assert list(state.cases) == ["a", "b", "c"]
+    weighted = {name: case["weighted_value"] for name, case in state.cases.items()}
+    assert state.theta == max(weighted.values())
+    worst = max(weighted, key=weighted.get)
+    assert (state.pressures == state.cases[worst]["pressures"]).all()
+    assert [(limit["quantity"], limit["case"]) for limit in state.limits] == [
+        ("peak-pressure", "b"), ("stress", "a"), ("stress", "b"), ("stress", "c")
+    ]
+    assert state.limits[0]["value"] == state.cases["b"]["pressures"].max()

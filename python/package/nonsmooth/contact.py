@@ -76,6 +76,12 @@ class Evaluation:
     warnings : list of str
         What is implausible about the state, as the command ``evaluate`` says it: each begins with a code that does not change, such as
         ``"large-strain: "``.
+    cases : dict of str to dict
+        The states of all load cases by their names, "" for a scene without cases: the arrays and numbers above but theta and gradient,
+        and ``weighted_value``, the measure of the case times its weight. The arrays above are those of the worst case.
+    limits : list of dict
+        The limits: ``quantity``, ``case``, the bound as ``at_most``, ``at_least`` or ``equal_to``, the ``value``, and by how much it is
+        beyond the bound, ``violation``.
     """
 
     theta: float
@@ -99,6 +105,8 @@ class Evaluation:
     root: float
     norm_in_mpa: float | None
     warnings: list
+    cases: dict
+    limits: list
 
 
 class Scene:
@@ -244,6 +252,8 @@ class Scene:
             may be any.
         """
         found = self._solved(controls, True)
+        for case in found["cases"].values():
+            case["weakly_active"] = json.loads(case["weakly_active"])
         return Evaluation(theta=found.pop("value"), weakly_active=json.loads(found.pop("weakly_active")), **found)
 
     def fun(self, controls):

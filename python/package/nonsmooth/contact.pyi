@@ -37,6 +37,8 @@ class Evaluation:
     root: float
     norm_in_mpa: float | None
     warnings: list[str]
+    cases: dict[str, dict[str, Any]]
+    limits: list[dict[str, Any]]
 
 class Scene:
     def __init__(self, **fields: Any) -> None: ...
