@@ -17,6 +17,7 @@ use contact::cost::{Limit, Measure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::load_cases::{CasesCost, LoadCase, Over, WeightedCase};
+use contact::names::find;
 use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
 use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
 use contact::solvers::{Processes, SolverKind, SolverPlan, Wanted};
@@ -165,6 +166,24 @@ impl Case {
         let weighted = self.cases.iter().zip(&problems).map(weighted).collect::<Result<Vec<_>, SceneError>>()?;
         let cost = CasesCost::new(&weighted, self.over, &self.limits)?;
         Ok((cost, problems))
+    }
+
+    /// A load case by its name, or that of an equal one; the only one of a scene without a name.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for an unknown name, and for none where there are several cases.
+    pub fn named(&self, name: Option<&str>) -> Result<&CaseScene, SceneError> {
+        let names = self.cases.iter().flat_map(|case| std::iter::once(&case.name).chain(&case.equal));
+        let names: Vec<&str> = names.map(String::as_str).collect();
+        match (name, self.cases.as_slice()) {
+            (None, [only]) => Ok(only),
+            (None, _) => Err(SceneError::out_of_range("--case", "missing", names.join(", "))),
+            (Some(name), cases) => {
+                let name = names[find("--case", name, names.iter().copied())?];
+                let has = |case: &&CaseScene| case.name == name || case.equal.iter().any(|own| own == name);
+                cases.iter().find(has).ok_or_else(|| SceneError::out_of_range("--case", name, names.join(", ")))
+            }
+        }
     }
 
     /// The case with changed blocks in all its scenes; a scene of a mesh stays as it is.

@@ -120,3 +120,43 @@ fn the_lug_states_its_stresses_in_every_case() {
     assert!((stresses[0] / 3221.02 - 1.0).abs() < 1e-5, "{stresses:?}");
     assert_eq!(stresses.len(), 3);
 }
+
+#[test]
+fn a_case_is_exported_by_its_name() {
+    let folder = scratch();
+    let scene = scene(folder.path(), "");
+    let out = folder.path().join("out");
+    let export =
+        [scene.as_str(), "export", "--friction-problem", "--mesh", "2", "--subdomains", "1", "--out", text(&out)];
+    let run = |options: &[&str]| {
+        let output = std::process::Command::new(contact3d()).args([&export[..], options].concat()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for (options, words) in [(&[][..], "left, still, right"), (&["--case", "rigt"], "right")] {
+        let (status, message) = run(options);
+        assert!(status == Some(2) && message.contains("--case") && message.contains(words), "{message}");
+    }
+    let loads = |name: &str| {
+        assert_eq!(run(&["--case", name, "--overwrite"]).0, Some(0));
+        let lists = std::fs::read_to_string(out.join("friction/problem.json")).unwrap();
+        serde_json::from_str::<Value>(&lists).unwrap()["load"].clone()
+    };
+    assert_ne!(loads("left"), loads("right"));
+}
+
+#[test]
+fn a_comparison_takes_friction_from_every_case() {
+    let folder = scratch();
+    let path = folder.path().join("cases.toml");
+    let base = include_str!("../../scenes/hertz.toml");
+    let cases = "[[case]]\nname = \"a\"\nfriction = 0.2\n\n[[case]]\nname = \"b\"\nload_factor = 0.9\n";
+    std::fs::write(&path, format!("{base}\n{cases}")).unwrap();
+    let out = folder.path().join("out");
+    let options = ["compare", "--mesh", "4", "--max-evaluations", "2", "--out", text(&out), "--json"];
+    json(contact3d(), &[&[text(&path)], &options[..]].concat());
+    let without = out.join("without_friction/scene.toml");
+    let read = std::fs::read_to_string(&without);
+    let names: Vec<_> = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let text = read.unwrap_or_else(|_| panic!("{names:?}"));
+    assert!(!text.contains("friction = 0.2"), "{text}");
+}

@@ -80,6 +80,7 @@ fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScen
             scene.friction = friction;
             if friction == 0.0 {
                 scene.contact.regions.clear();
+                scene.case.iter_mut().for_each(|case| case.friction = None);
             }
             scene.output.folder = folder.map(|folder| folder.folder.path().join(name).display().to_string());
         })

@@ -48,7 +48,11 @@ struct FileJson {
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (arguments, case) = (session.arguments, &loaded.case);
     let options = &arguments.export;
-    let problem = ContactProblem::new(case.scene.clone())?;
+    let scene = match options.friction_problem {
+        true => &case.named(options.case.as_deref()).map_err(|error| arguments.changes().blame(error))?.scene,
+        false => &case.scene,
+    };
+    let problem = ContactProblem::new(scene.clone())?;
     if options.friction_problem {
         friction::check(&problem).map_err(|error| arguments.changes().blame(error))?;
     }

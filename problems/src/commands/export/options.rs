@@ -34,6 +34,9 @@ pub struct ExportOptions {
     /// Stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.
     #[arg(long)]
     pub friction_problem: bool,
+    /// With --friction-problem: the load case of a scene that has several.
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
     /// Largest distance between triangles and surface, mm [default: 1e-3].
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
@@ -60,6 +63,9 @@ impl ExportOptions {
         }
         if has_controls && self.run.is_some() {
             return refused("--controls", "without --run, which names the shape");
+        }
+        if self.case.is_some() && !self.friction_problem {
+            return refused("--case", "with --friction-problem only: the shape is the same in all cases");
         }
         if self.tolerance.is_some() && !(self.stl || self.is_free()) {
             return refused("--tolerance", "with --stl only, or without any format");
