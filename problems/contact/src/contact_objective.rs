@@ -222,6 +222,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
         let plain = (0..self.cases().count()).all(|case| self.cost().weight(case) == 1.0);
         let alone = self.cases().count() == 1 || self.cost().over() == Over::Worst;
+        let alone = alone && self.cost().fairness().is_none();
         self.pressure(0).filter(|_| plain && alone)?.pressure_root(value)
     }
 
@@ -232,7 +233,8 @@ impl<S: ContactSolver> ContactObjective<S> {
 
     /// As [`PressureCost::norm_of_root`]; none for several cases and for functions of the displacements.
     pub fn norm_of_root(&self) -> Option<(f64, String)> {
-        self.pressure(0).filter(|_| self.cases().count() == 1)?.norm_of_root()
+        let plain = self.cases().count() == 1 && self.cost().fairness().is_none();
+        self.pressure(0).filter(|_| plain)?.norm_of_root()
     }
 
     /// As [`PressureCost::norm_in_mpa`], under the conditions of [`pressure_root`](Self::pressure_root).

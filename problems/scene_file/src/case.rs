@@ -19,7 +19,7 @@ use contact::error::SceneError;
 use contact::load_cases::{CasesCost, LoadCase, Over, WeightedCase};
 use contact::names::find;
 use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
-use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
+use contact::shape::{HeightShape, ShapeScene, SplineKind};
 use contact::solvers::{Processes, SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
 use exchange::gmsh::GmshMesh;
@@ -235,12 +235,9 @@ fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, SceneError> {
         shape: ShapeScene::Heights(HeightShape {
             spline: spline(surface)?,
             control_points,
-            bounds: ShapeBounds {
-                minimum_height: admissible.minimum_height,
-                slope: admissible.slope,
-                volume: admissible.volume,
-            },
+            bounds: admissible.bounds(),
             start_height,
+            fairness: surface.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
         }),
     };
     Ok(Parts { scene, start, notes: Vec::new() })

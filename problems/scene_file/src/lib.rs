@@ -42,7 +42,7 @@ pub use region::{BodyName, RegionSection};
 pub use schema::schema;
 pub use setting::{Setting, check_path};
 pub use settings::{AccuracyName, MeshSection, MethodName, OptimizerSection, OutputSection, SolverSection};
-pub use surfaces::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
+pub use surfaces::{AdmissibleSection, CounterSection, FairnessSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;
 pub use text::read_text;
 pub use wanted_pressure::WantedPressure;

@@ -1,6 +1,7 @@
 //! Surfaces of a scene file: what lies above, what is optimized, and within which bounds.
 
 use contact::scene::Side;
+use contact::shape::ShapeBounds;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -107,6 +108,18 @@ pub struct SurfaceSection {
     pub control_points: [usize; 2],
     /// Shape that an optimization starts from.
     pub start: StartSection,
+    /// A fairer surface than the measure alone asks for. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fairness: Option<FairnessSection>,
+}
+
+/// The bending of the surface as a part of the objective.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FairnessSection {
+    /// The factor of the bending ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² of the control net (mm²), which is added to the objective.
+    #[schemars(range(min = 0.0, max = 1e60), extend("x-unit" = "unit of the objective per mm²"))]
+    pub weight: f64,
 }
 
 /// Which spline.
@@ -173,6 +186,13 @@ pub struct AdmissibleSection {
     /// Smallest and largest volume of the lower body.
     #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
     pub volume: [f64; 2],
+}
+
+impl AdmissibleSection {
+    /// The constants of the admissible set.
+    pub(crate) fn bounds(&self) -> ShapeBounds {
+        ShapeBounds { minimum_height: self.minimum_height, slope: self.slope, volume: self.volume }
+    }
 }
 
 fn six_by_six() -> [usize; 2] {

@@ -121,6 +121,29 @@ fn the_lug_states_its_stresses_in_every_case() {
     assert_eq!(stresses.len(), 3);
 }
 
+/// A surface that may bend at a price bends less, and its objective says so.
+#[test]
+fn fairness_is_a_part_of_the_objective() {
+    let fairness = |weight: &str| format!("surface.fairness={{weight={weight}}}");
+    let hertz = format!("{}/scenes/hertz.toml", env!("CARGO_MANIFEST_DIR"));
+    let run = |options: &[&str]| {
+        let fixed = [hertz.as_str(), "--single", "--mesh", "4", "--subdomains", "2", "--json"];
+        json(contact3d(), &[&fixed[..], options].concat())
+    };
+    let bends = |found: &Value| {
+        let heights: Vec<f64> = found["controls"].as_array().unwrap().iter().map(number).collect();
+        let second = |i: usize, step: usize| (heights[i] - 2.0 * heights[i + step] + heights[i + 2 * step]).powi(2);
+        let along = (0..6).flat_map(|row| (0..4).map(move |i| (6 * row + i, 1)));
+        let across = (0..24).map(|i| (i, 6));
+        along.chain(across).map(|(i, step)| second(i, step)).sum::<f64>()
+    };
+    let (free, fair) = (run(&[]), run(&["--set", &fairness("1e15")]));
+    assert_eq!(fair["termination"]["confirmed"], true, "{}", fair["termination"]);
+    assert!(bends(&fair) < 0.9 * bends(&free), "{} {}", bends(&fair), bends(&free));
+    let refused = std::process::Command::new(contact3d()).args([&hertz, "--set", &fairness("-1")]).output().unwrap();
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("surface.fairness.weight"));
+}
+
 #[test]
 fn a_case_is_exported_by_its_name() {
     let folder = scratch();

@@ -5,6 +5,7 @@ use crate::cost::{
 };
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
+use crate::shape::bending_rows;
 use nonsmooth::composite::{OuterFunction, OuterPart, OutputPiece};
 use nonsmooth::{ConstraintKind, Matrix, Vector};
 use std::ops::Range;
@@ -54,6 +55,8 @@ pub struct CasesCost {
     volume: Option<usize>,
     limits: Vec<PeakLimit>,
     kinds: Vec<ConstraintKind>,
+    /// The first of the outputs r = √w R α whose squares add the bending of the surface, and √w R.
+    fairness: Option<(usize, Matrix)>,
 }
 
 impl CasesCost {
@@ -78,9 +81,11 @@ impl CasesCost {
             parts.push(part);
             peaks.extend(own);
         }
+        let fairness = fairness(cases)?;
         let is_volume = parts.iter().any(|part| matches!(part.cost, CaseCost::Volume));
         let kinds = vec![ConstraintKind::Nonsmooth; peaks.len()];
-        Ok(Self { over, parts, volume: is_volume.then_some(next), limits: peaks, kinds })
+        let fairness = fairness.map(|rows| (next + usize::from(is_volume), rows));
+        Ok(Self { over, parts, volume: is_volume.then_some(next), limits: peaks, kinds, fairness })
     }
 
     /// The outputs of the pressures of a case; none where neither objective nor limits depend on them.
@@ -96,6 +101,27 @@ impl CasesCost {
     /// Whether the volume is minimised.
     pub(super) fn is_volume(&self) -> bool {
         self.volume.is_some()
+    }
+
+    /// √w R of the bending w|Rα|² that is added to Θ, if it is.
+    pub(crate) fn fairness(&self) -> Option<&Matrix> {
+        self.fairness.as_ref().map(|(_, rows)| rows)
+    }
+
+    /// What the bending adds to Θ, with its gradient.
+    fn bending(&self, outputs: &Vector) -> (f64, Vector) {
+        let mut gradient = Vector::zeros(outputs.len());
+        let Some((first, rows)) = &self.fairness else { return (0.0, gradient) };
+        let own = outputs.rows(*first, rows.nrows());
+        gradient.rows_mut(*first, rows.nrows()).copy_from(&(own * 2.0));
+        (own.norm_squared(), gradient)
+    }
+
+    /// The curvature of a function without the bending, with it.
+    fn bent(&self, curvature: Matrix, jacobian: &Matrix) -> Matrix {
+        let Some((first, rows)) = &self.fairness else { return curvature };
+        let own = jacobian.rows(*first, rows.nrows());
+        curvature + own.tr_mul(&own) * 2.0
     }
 
     /// How the cases are rated together.
@@ -181,6 +207,16 @@ impl Part {
     }
 }
 
+/// √w R of the surface that the cases share, where its bending counts.
+fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
+    let scene = cases.first().map(|case| &case.problem.scene);
+    let known = scene.and_then(|scene| Some((scene.heights()?, scene.blocks()?)));
+    let Some((heights, blocks)) = known.filter(|(heights, _)| heights.fairness != 0.0) else { return Ok(None) };
+    let (weight, allowed) = (heights.fairness, "a finite number ≥ 0 (unit of the objective per mm² of bending)");
+    SceneError::require(weight > 0.0 && weight.is_finite(), "surface.fairness.weight", weight, allowed)?;
+    Ok(Some(bending_rows(&heights.surface()?, blocks.size) * weight.sqrt()))
+}
+
 /// The costs of all cases; norms are roots in all cases if they have to be in one.
 fn normalised(cases: &[WeightedCase<'_>]) -> Result<Vec<CaseCost>, SceneError> {
     let cost = |case: &WeightedCase<'_>| {
@@ -211,27 +247,29 @@ fn slice(outputs: &Vector, range: &Range<usize>) -> Vector {
 
 impl OuterFunction for CasesCost {
     fn value(&self, outputs: &Vector) -> f64 {
+        let bending = self.bending(outputs).0;
         if let Some(place) = self.volume {
-            return outputs[place];
+            return outputs[place] + bending;
         }
         let values = self.weighted(outputs);
-        match self.over {
-            Over::Sum => values.iter().sum(),
-            // What is no number stays, to be refused.
-            Over::Worst => values
-                .into_iter()
-                .fold(f64::NEG_INFINITY, |most, next| if most.is_nan() || most > next { most } else { next }),
-        }
+        bending
+            + match self.over {
+                Over::Sum => values.iter().sum(),
+                // What is no number stays, to be refused.
+                Over::Worst => values
+                    .into_iter()
+                    .fold(f64::NEG_INFINITY, |most, next| if most.is_nan() || most > next { most } else { next }),
+            }
     }
 
     fn subgradient(&self, outputs: &Vector) -> Vector {
-        let mut subgradient = Vector::zeros(outputs.len());
+        let mut bending = self.bending(outputs).1;
         if let Some(place) = self.volume {
-            subgradient[place] = 1.0;
-            return subgradient;
+            bending[place] = 1.0;
+            return bending;
         }
         let only = (self.over == Over::Worst).then(|| self.worst(outputs));
-        self.gradient_of(outputs, |case| only.is_none_or(|only| only == case))
+        self.gradient_of(outputs, |case| only.is_none_or(|only| only == case)) + bending
     }
 
     /// Σ w_k times the curvature of the measures; none for the worst of several cases, which has kinks, and where a
@@ -244,11 +282,11 @@ impl OuterFunction for CasesCost {
         for part in &self.parts {
             let own = self.curvature_of(part, outputs, jacobian)?;
             if self.parts.len() == 1 && part.weight == 1.0 {
-                return Some(own);
+                return Some(self.bent(own, jacobian));
             }
             sum += own * part.weight;
         }
-        Some(sum)
+        Some(self.bent(sum, jacobian))
     }
 
     /// The weighted measures of the cases where the worst counts; else Θ itself.
@@ -256,9 +294,10 @@ impl OuterFunction for CasesCost {
         if self.volume.is_some() || self.over == Over::Sum || self.parts.len() == 1 {
             return vec![OuterPart { value: self.value(outputs), gradient: self.subgradient(outputs) }];
         }
+        let (bending, slope) = self.bending(outputs);
         let part = |(index, part): (usize, &Part)| OuterPart {
-            value: part.weight * self.value_of(part, outputs),
-            gradient: self.gradient_of(outputs, |case| case == index),
+            value: part.weight * self.value_of(part, outputs) + bending,
+            gradient: self.gradient_of(outputs, |case| case == index) + &slope,
         };
         self.parts.iter().enumerate().map(part).collect()
     }
@@ -272,7 +311,7 @@ impl OuterFunction for CasesCost {
         for (part, weight) in self.parts.iter().zip(weights) {
             sum += self.curvature_of(part, outputs, jacobian)? * (part.weight * weight);
         }
-        Some(sum)
+        Some(self.bent(sum, jacobian))
     }
 
     fn constraint_kinds(&self) -> &[ConstraintKind] {

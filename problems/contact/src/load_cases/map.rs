@@ -15,11 +15,13 @@ use nonsmooth::{
 
 /// The control-to-states map of some cases that share their shape. The dual of its states is that of the cases, one
 /// after the other ([`crate::contact_shape`]); so are its outputs, after which the volume of the lower body (mm³)
-/// follows where it is the objective.
+/// follows where it is the objective, and the rows of its bending where that counts.
 #[derive(Debug)]
 pub struct LoadCases<S: ContactSolver = AnySolver> {
     cases: Vec<OneCase<S>>,
     with_volume: bool,
+    /// Linear functions of the controls that follow as outputs.
+    fairness: Option<Matrix>,
 }
 
 /// A case as the map needs it.
@@ -50,8 +52,8 @@ impl<S: ContactSolver> LoadCases<S> {
             let shape = if field.is_some() || in_limits { shape.with_displacements() } else { shape };
             OneCase { name, shape, with_pressures, field, with_tangents }
         };
-        let with_volume = cost.is_volume();
-        Self { cases: cases.into_iter().enumerate().map(one).collect(), with_volume }
+        let (with_volume, fairness) = (cost.is_volume(), cost.fairness().cloned());
+        Self { cases: cases.into_iter().enumerate().map(one).collect(), with_volume, fairness }
     }
 
     /// Number of different cases.
@@ -286,6 +288,7 @@ impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
         if self.with_volume {
             outputs.push(volume(self.cases[0].shape.problem(), states.control.as_slice()));
         }
+        outputs.extend(self.fairness.iter().flat_map(|rows| (rows * &states.control).as_slice().to_vec()));
         Vector::from_vec(outputs)
     }
 
@@ -300,6 +303,10 @@ impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
         }
         if self.with_volume {
             explicit += volume_gradient(self.cases[0].shape.problem(), control.as_slice()) * weights[first];
+            first += 1;
+        }
+        if let Some(rows) = &self.fairness {
+            explicit += rows.tr_mul(&weights.rows(first, rows.nrows()));
         }
         CostGradient { control: explicit, state: Vector::from_vec(duals) }
     }
@@ -317,6 +324,10 @@ impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
             let outputs = Vector::from_element(1, volume(problem, control.as_slice()));
             let jacobian =
                 Matrix::from_row_slice(1, control.len(), volume_gradient(problem, control.as_slice()).as_slice());
+            parts.push(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None });
+        }
+        if let Some(rows) = &self.fairness {
+            let (outputs, jacobian) = (rows * control, rows.clone());
             parts.push(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None });
         }
         Ok(stacked(parts, control.len()))

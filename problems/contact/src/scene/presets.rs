@@ -37,6 +37,7 @@ pub fn signorini() -> Result<Scene, SceneError> {
             control_points: [6, 6],
             bounds: ShapeBounds { minimum_height: 50.0, slope: 5.0, volume: [0.8e6, 1.2e6] },
             start_height: 100.0,
+            fairness: 0.0,
         }),
     })
 }
@@ -65,6 +66,7 @@ pub fn hertz() -> Result<Scene, SceneError> {
             control_points: [6, 6],
             bounds: ShapeBounds { minimum_height: 5.0, slope: 5.0, volume: [800.0, 1200.0] },
             start_height: 10.0,
+            fairness: 0.0,
         }),
     })
 }

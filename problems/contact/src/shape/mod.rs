@@ -14,6 +14,7 @@ mod surface;
 
 pub use admissible::{AdmissibleSet, ShapeBounds};
 pub use bending::bending;
+pub(crate) use bending::bending_rows;
 pub use heights::HeightShape;
 pub(crate) use heights::height_map;
 pub use lattice::{Coordinates, Directions, LatticeShape, NodeBound};

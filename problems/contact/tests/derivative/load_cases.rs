@@ -129,6 +129,36 @@ fn the_stacked_jacobian_has_the_rows_that_adjoints_give() {
     }
 }
 
+#[test]
+fn the_bending_is_added_with_its_derivatives() {
+    let weight = 1e10;
+    let fair = |(name, scene): (&'static str, Scene)| (name, scene.with_heights(|heights| heights.fairness = weight));
+    for over in [Over::Worst, Over::Sum] {
+        let plain = objective(&scenes(), SolverKind::Direct, &norm(), over, &[]);
+        let bent = objective(&scenes().map(fair), SolverKind::Direct, &norm(), over, &[]);
+        let at = shape(&plain, 3);
+        let value =
+            |objective: &ContactObjective| objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value;
+        let scene = &plain.solver().problem().scene;
+        let surface = scene.heights().unwrap().surface().unwrap();
+        let energy = at.dot(&(contact::shape::bending(&surface, scene.blocks().unwrap().size) * &at));
+        let expected = value(&plain) + weight * energy;
+        assert!((value(&bent) / expected - 1.0).abs() < 1e-12 && weight * energy > 1e-9 * expected);
+        let direction = Direction::Given(seeded_direction(36, 4));
+        let test = taylor_test(&bent, &at, &direction, &steps()).unwrap();
+        assert!(test.best_derivative_error < 1e-6, "{over:?}: {test}");
+        let states = bent.cases().solve(&at, None, Accuracy::TIGHTEST).unwrap();
+        let known = bent.cases().linearize(&at, &states, Accuracy::relative(1e-9).unwrap()).unwrap();
+        assert_eq!(known.outputs, bent.cases().outputs(&states));
+        let weights = seeded_direction(known.outputs.len(), 11);
+        let dual = bent.cases().output_dual(&at, &states, &weights);
+        let pulled = dual.control
+            + nonsmooth::Coderivative::coderivative(bent.cases(), &at, &states, &dual.state).unwrap().element;
+        let product = known.jacobian.tr_mul(&weights);
+        assert!((&pulled - &product).norm() < 1e-7 * product.norm(), "{over:?}");
+    }
+}
+
 /// One constraint of an objective as an objective of its own.
 #[derive(Debug)]
 struct OneLimit<'a>(&'a ContactObjective, usize);

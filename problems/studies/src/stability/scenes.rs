@@ -43,6 +43,7 @@ pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneE
             control_points: [2, 2],
             bounds: ShapeBounds { minimum_height: 1e-9, slope: 1e6, volume: [1e-9, 1e12] },
             start_height: 10.0,
+            fairness: 0.0,
         }),
     })
 }

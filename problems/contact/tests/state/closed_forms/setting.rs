@@ -33,6 +33,7 @@ pub fn block(size: [f64; 2], height: f64, bricks: [usize; 3], material: Material
             control_points: [2, 2],
             bounds: ShapeBounds { minimum_height: 0.0, slope: 1e3, volume: [0.0, 1e30] },
             start_height: height,
+            fairness: 0.0,
         }),
     }
 }
