@@ -12,6 +12,7 @@ use nonsmooth::{
     Accuracy, Coderivative, CostGradient, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver,
     Vector,
 };
+use std::ops::Range;
 
 /// The control-to-states map of some cases that share their shape. The dual of its states is that of the cases, one
 /// after the other ([`crate::contact_shape`]); so are its outputs, after which the volume of the lower body (mm³)
@@ -71,14 +72,15 @@ impl<S: ContactSolver> LoadCases<S> {
         &self.cases[index].name
     }
 
-    /// Does something for all cases: at the same time, or in turn where several processes share the work.
-    pub(crate) fn on_all<T: Send>(
+    /// Does something for the cases of a range: at the same time, or in turn where several processes share the work.
+    fn on_all<T: Send>(
         &self,
+        cases: Range<usize>,
         work: impl Fn(usize) -> Result<T, OracleError> + Sync,
     ) -> Result<Vec<T>, OracleError> {
-        let in_turn = self.cases[0].shape.contact_solver().is_shared();
-        let results = on_all(self.cases.len(), in_turn, work).into_iter().zip(&self.cases);
-        results.map(|(result, case)| result.map_err(|error| named(&case.name, error))).collect()
+        let (first, in_turn) = (cases.start, self.cases[0].shape.contact_solver().is_shared());
+        let results = on_all(cases.len(), in_turn, |number| work(first + number)).into_iter();
+        results.zip(&self.cases[cases]).map(|(result, case)| result.map_err(|error| named(&case.name, error))).collect()
     }
 
     /// Number of entries of the dual of a case.
@@ -243,7 +245,10 @@ impl<S: ContactSolver> StateSolver for LoadCases<S> {
             let start = start.and_then(|start| start.get(index));
             self.cases[index].shape.solve(control, start, accuracy)
         };
-        Ok(CaseStates::new(control.clone(), self.on_all(state)?))
+        // The others take over the factors of the first.
+        let mut states = self.on_all(0..1, state)?;
+        states.extend(self.on_all(1..self.cases.len(), state)?);
+        Ok(CaseStates::new(control.clone(), states))
     }
 
     fn warm_start(&self, states: &Self::State) -> Vec<ContactWarmStart> {
@@ -273,7 +278,7 @@ impl<S: ContactSolver> Coderivative for LoadCases<S> {
             let solve = || self.cases[index].shape.coderivative(control, &states[index], &own);
             if is_zero { Ok(Sensitivity::exact(Vector::zeros(control.len()))) } else { solve() }
         };
-        let mut parts = self.on_all(part)?.into_iter();
+        let mut parts = self.on_all(0..self.cases.len(), part)?.into_iter();
         let first = parts.next().unwrap_or_else(|| Sensitivity::exact(Vector::zeros(control.len())));
         Ok(parts.fold(first, |sum, part| Sensitivity {
             element: sum.element + part.element,
@@ -318,7 +323,8 @@ impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
         accuracy: Accuracy,
     ) -> Result<Linearization, OracleError> {
         self.check(control)?;
-        let mut parts = self.on_all(|index| self.linearize_case(index, control, states, accuracy))?;
+        let mut parts =
+            self.on_all(0..self.cases.len(), |index| self.linearize_case(index, control, states, accuracy))?;
         if self.with_volume {
             let problem = self.cases[0].shape.problem();
             let outputs = Vector::from_element(1, volume(problem, control.as_slice()));
