@@ -34,7 +34,7 @@ fn the_seat_is_what_the_tutorial_says() {
     compare(&peaks(&seat(&["study", "--vary", "mesh=6,12,18,24"])), &[907.0, 987.7, 990.0, 992.2]);
     let folder = scratch();
     let out = folder.path().join("seat");
-    let run = seat(&["--out", text(&out)]);
+    let run = seat(&["--single", "--out", text(&out)]);
     assert!(run["termination"]["confirmed"] == true && run["warnings"].as_array().unwrap().is_empty(), "{run}");
     assert!((12..=25).contains(&run["evaluations"].as_u64().unwrap()), "{}", run["evaluations"]);
     let controls = out.join("controls.json");
