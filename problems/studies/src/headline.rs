@@ -27,7 +27,10 @@ pub fn run(scene: SceneName, options: &[&str]) -> Result<Value, Failure> {
     };
     let arguments = [&["contact"], options, &["--json"]].concat();
     let arguments = Arguments::try_parse_from(arguments).map_err(Failure::computation)?;
-    let text = execute(|| Ok((SceneFile::parse(text, name)?, None)), &arguments)?;
+    let mut file = SceneFile::parse(text, name)?;
+    // As by the binaries of these examples.
+    file.optimizer.single = true;
+    let text = execute(|| Ok((file.clone(), None)), &arguments)?;
     serde_json::from_str(&text).map_err(Failure::computation)
 }
 
