@@ -28,17 +28,16 @@ pub trait OuterFunction {
         None
     }
 
-    /// The functions h_k whose maximum h is, m entries each gradient: smooth ones where
-    /// [`parts_curvature`](Self::parts_curvature) has an answer. The default is h itself with one subgradient.
-    fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
-        vec![OuterPart { value: self.value(outputs), gradient: self.subgradient(outputs) }]
+    /// The smooth convex functions h_k whose maximum h is, always as many; none (the default): h is no such maximum.
+    fn parts(&self, _outputs: &Vector) -> Vec<OuterPart> {
+        vec![]
     }
 
-    /// Σ λ_k Gᵀ∇²h_k G, n × n, for weights λ_k ≥ 0 of the [`parts`](Self::parts), if these are smooth: the subproblem
-    /// is then solved by Newton's method, with all parts at once. The default is the [`curvature`](Self::curvature) of
-    /// h. The answer must not be a matrix for some outputs and none for others.
-    fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, _weights: &[f64]) -> Option<Matrix> {
-        self.curvature(outputs, jacobian)
+    /// Σ λ_k Gᵀ∇²h_k G, n × n, for one weight λ_k ≥ 0 per [part](Self::parts): the subproblem is then solved by Newton's
+    /// method, with all parts at once. None (the default): it is solved by cuts of h. The answer must not be a matrix
+    /// for some outputs and none for others.
+    fn parts_curvature(&self, _outputs: &Vector, _jacobian: &Matrix, _weights: &[f64]) -> Option<Matrix> {
+        None
     }
 
     /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is

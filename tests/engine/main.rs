@@ -20,6 +20,7 @@ mod interruption;
 mod kinks;
 mod linear_scaling;
 mod many_variables;
+mod parts;
 mod proposers;
 mod restart;
 mod second_look;

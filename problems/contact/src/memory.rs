@@ -67,9 +67,9 @@ pub(crate) fn estimate(
     NUMBER * (owned * per_piece + DUAL_VECTORS * rows + coarse) + tangents
 }
 
-/// Memory that a plan needs in one process, bytes, roughly.
+/// Memory that a plan needs in one process for all its load cases, bytes, roughly.
 pub fn needed(plan: &SolverPlan) -> f64 {
-    estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), 1)
+    plan.cases as f64 * estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), 1)
 }
 
 /// Refuses a scene that needs more memory than the machine has to give. Where the system does not
@@ -79,7 +79,8 @@ pub fn needed(plan: &SolverPlan) -> f64 {
 /// [`SceneError::OutOfRange`] with both figures; [`SceneError::OtherProcess`] if only another process refuses.
 pub fn check(plan: &SolverPlan, communication: &dyn Communication) -> Result<(), SceneError> {
     let processes = communication.size();
-    let needed = estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), processes);
+    let one = estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), processes);
+    let needed = plan.cases as f64 * one;
     if processes == 1 {
         return compare(&plan.scene, needed, available());
     }

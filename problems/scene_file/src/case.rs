@@ -16,7 +16,7 @@ use contact::contact_shape::ContactShape;
 use contact::cost::{Limit, Measure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
-use contact::load_cases::{CasesCost, LoadCase, Over, WeightedCase};
+use contact::load_cases::{Bound, CasesCost, LoadCase, Over, WeightedCase};
 use contact::names::find;
 use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
 use contact::shape::{HeightShape, ShapeScene, SplineKind};
@@ -135,7 +135,8 @@ impl Case {
     pub fn plans(&self, wanted: Wanted) -> impl Iterator<Item = SolverPlan> {
         let Self { preconditioner, clusters, solver: kind, .. } = *self;
         let scenes = self.cases.iter().map(|case| case.scene.clone());
-        scenes.map(move |scene| SolverPlan { scene, kind, preconditioner, clusters, wanted })
+        let cases = self.cases.len();
+        scenes.map(move |scene| SolverPlan { scene, kind, preconditioner, clusters, wanted, cases })
     }
 
     /// Θ over all load cases, with solvers that are prepared in some processes.
@@ -152,11 +153,11 @@ impl Case {
         ContactObjective::of_cases(cases, self.over, &self.limits)
     }
 
-    /// Θ over all load cases as a function of their outputs, with their problems; no solver is prepared.
+    /// Θ over all load cases as a function of their outputs, with their limits and problems; no solver is prepared.
     ///
     /// # Errors
     /// As [`ContactProblem::new`], [`Case::measure`] and [`CasesCost::new`].
-    pub fn cost(&self) -> Result<(CasesCost, Vec<ContactProblem>), SceneError> {
+    pub fn cost(&self) -> Result<(CasesCost, Vec<Bound>, Vec<ContactProblem>), SceneError> {
         let problem = |case: &CaseScene| ContactProblem::new(case.scene.clone());
         let problems = self.cases.iter().map(problem).collect::<Result<Vec<_>, SceneError>>()?;
         let weighted = |(case, problem): (_, _)| {
@@ -165,7 +166,9 @@ impl Case {
         };
         let weighted = self.cases.iter().zip(&problems).map(weighted).collect::<Result<Vec<_>, SceneError>>()?;
         let cost = CasesCost::new(&weighted, self.over, &self.limits)?;
-        Ok((cost, problems))
+        let named = self.cases.iter().map(|case| case.name.as_str()).zip(&problems).collect::<Vec<_>>();
+        let bounds = Bound::all(&self.limits, &named)?;
+        Ok((cost, bounds, problems))
     }
 
     /// A load case by its name, or that of an equal one; the only one of a scene without a name.

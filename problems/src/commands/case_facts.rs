@@ -64,7 +64,7 @@ pub fn cases(
     let weighted: Vec<Vec<f64>> = shapes.iter().map(|shape| objective.weighted_values(&shape.states)).collect();
     let (mut facts, mut list) = (Vec::new(), Vec::new());
     for (case, scene) in scenes.iter().enumerate() {
-        let resultants = shapes.iter().map(|shape| resultants(objective, shape, case));
+        let resultants = shapes.iter().map(|shape| objective.cases().case(case).resultants(&shape.states[case]));
         let resultants = resultants.collect::<Result<Vec<_>, _>>()?;
         let multiplier = multipliers.as_ref().map(|multipliers| multipliers[case]);
         let own: Vec<f64> = weighted.iter().map(|values| values[case]).collect();
@@ -82,11 +82,6 @@ pub fn cases(
     facts.push(Fact::json("cases", &list)?);
     let (title, words) = if several { ("Load cases", INDEPENDENT) } else { ("Forces and stresses", "") };
     Ok(Group { title, columns: labels, facts, words: words.into() })
-}
-
-fn resultants(objective: &ContactObjective, shape: &SolvedShape, case: usize) -> Result<Resultants, Failure> {
-    let (map, state) = (objective.cases().case(case), &shape.states[case]);
-    Ok(Resultants::new(map.problem(), &map.bodies(state)?, (&state.rows, &state.forces)))
 }
 
 /// The rows of one case.

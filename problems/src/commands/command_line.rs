@@ -136,7 +136,8 @@ fn tell_of_files(loaded: &LoadedScene) {
     let notes = &loaded.case.notes;
     notes.iter().for_each(|note| notice(note));
     if !notes.is_empty() {
-        let megabytes = loaded.case.plans(Wanted::States).map(|plan| memory::needed(&plan)).sum::<f64>() / 1e6;
+        let needed = loaded.case.plans(Wanted::States).map(|plan| memory::needed(&plan)).fold(0.0, f64::max);
+        let megabytes = needed / 1e6;
         notice(&format!("a state takes about {} MB of memory", number(megabytes.ceil())));
     }
 }

@@ -2,10 +2,8 @@
 
 use contact::cost::{LimitSide, LimitedQuantity};
 use contact::equilibrium::ContactProblem;
-use contact::error::SceneError;
 use contact::load_cases::{Bound, CasesCost};
 use nonsmooth::{Certificate, CompositeProof, ConstraintKind, Vector};
-use scene_file::Case;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -50,15 +48,10 @@ impl LimitCheck {
     /// The limits in the certificate; none if it does not hold these.
     pub fn all(
         certificate: &Certificate,
-        case: &Case,
-        (cost, problems): (&CasesCost, &[ContactProblem]),
-    ) -> Result<Option<Vec<Self>>, SceneError> {
-        let names = case.cases.iter().map(|case| case.name.as_str());
-        let bounds = Bound::all(&case.limits, &names.zip(problems).collect::<Vec<_>>())?;
+        (cost, bounds, problems): (&CasesCost, &[Bound], &[ContactProblem]),
+    ) -> Option<Vec<Self>> {
         let kinds: Vec<ConstraintKind> = bounds.iter().map(Bound::kind).collect();
-        let Some(proof) = certificate.constraints.as_ref().filter(|proof| proof.kinds == kinds) else {
-            return Ok(None);
-        };
+        let proof = certificate.constraints.as_ref().filter(|proof| proof.kinds == kinds)?;
         let multipliers = proof.multipliers();
         let composite = certificate.composite.as_ref();
         let check = |(index, bound): (usize, &Bound)| {
@@ -89,7 +82,7 @@ impl LimitCheck {
             let (quantity, case) = (limit.quantity.name(), limit.case.clone());
             Self { quantity, case, excess, multiplier: multipliers[index], cuts, agrees }
         };
-        Ok(Some(bounds.iter().enumerate().map(check).collect()))
+        Some(bounds.iter().enumerate().map(check).collect())
     }
 
     /// The quantity with its case.

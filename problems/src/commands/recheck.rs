@@ -55,7 +55,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
-    let (cost, problems) = case.cost()?;
+    let (cost, bounds, problems) = case.cost()?;
     let foreign = |error| {
         Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
     };
@@ -67,7 +67,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     result.composite = proof;
     let checks = match case.limits.is_empty() {
         true => Some(vec![]),
-        false => LimitCheck::all(&certificate, &case, (&cost, &problems))?,
+        false => LimitCheck::all(&certificate, (&cost, &bounds, &problems)),
     };
     result.limits = checks.ok_or_else(|| {
         let words = "the certificate does not hold the limits of its scene";

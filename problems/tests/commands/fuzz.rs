@@ -162,7 +162,7 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     case.plans(Wanted::States).try_for_each(|plan| memory::check(&plan, &InProcess))?;
     let bricks = case.scene.blocks().map_or([0; 3], |blocks| blocks.bricks);
     if (bricks[0] + 1) * (bricks[1] + 1) <= SMALL && bricks[2] <= 40 && case.scene.control_count() <= SMALL {
-        let (_, problems) = case.cost()?;
+        let (_, _, problems) = case.cost()?;
         let problem = &problems[0];
         let start = case.start.unwrap_or_else(|| case.scene.shape.start());
         problem.admissible.check(&nonsmooth::Vector::from_vec(start.clone()))?;

@@ -292,8 +292,8 @@ impl Proposer for Composite {
         // The center evaluated anew has outdated the proof.
         self.escape = None;
         if let (Some(outer), Some(known)) = (at.outer, linearization) {
-            let constraints = at.state.constraints.as_ref();
-            let curved = are_curved(outer, constraints.map(|found| &**found));
+            let constraints = at.state.constraints.as_deref();
+            let curved = are_curved(outer, constraints);
             let found = constraints.map(|constraints| constraints.center_evaluation());
             self.steps.remember(outer, &at.state.center, (known, found), curved);
         }

@@ -58,8 +58,8 @@ impl Steps {
         }
     }
 
-    /// Remembers a Jacobian, unless h has a curvature of its own and no smooth constraints are `curved`: the model then
-    /// uses no curvature of the outputs.
+    /// Remembers a Jacobian, unless h has a curvature of its own and no constraints are [`curved`](are_curved): the model
+    /// then uses no curvature of the outputs.
     pub(super) fn remember(
         &mut self,
         outer: &dyn OuterFunction,
@@ -75,8 +75,8 @@ impl Steps {
     }
 
     /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights
-    /// of the solution. Beside smooth constraints, it is added at once, with theirs: along a curved constraint every
-    /// step meets it.
+    /// of the solution. Beside constraints of known curvature, it is added at once, with theirs: along a curved
+    /// constraint every step meets it.
     fn solve(
         &mut self,
         at: &mut Position<'_>,
@@ -97,8 +97,8 @@ impl Steps {
             curvature: None,
             origin: changes.origin,
         };
-        let constraints = at.state.constraints.as_ref();
-        let curved = are_curved(outer, constraints.map(|found| &**found));
+        let constraints = at.state.constraints.as_deref();
+        let curved = are_curved(outer, constraints);
         if !curved && (!self.needs_curvature || outer.curvature(outputs, jacobian).is_some()) {
             return model.solve(at.solver);
         }

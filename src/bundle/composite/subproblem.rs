@@ -19,7 +19,6 @@ use crate::bundle::proposers::proposal::SubproblemError;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 #[cfg(feature = "interior-point")]
 use crate::composite::Epigraph;
-use crate::composite::{Linearization, OuterPart};
 use crate::interruption::interrupted;
 #[cfg(feature = "interior-point")]
 use crate::panics::without_panic;
@@ -51,13 +50,13 @@ const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 impl CompositeModel<'_> {
     pub(crate) fn solve(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
-        let Linearization { outputs, jacobian, .. } = self.linearization;
+        let outputs = &self.linearization.outputs;
         solver.forget();
         let parts = self.outer.parts(outputs).len();
-        match self.outer.parts_curvature(outputs, jacobian, &vec![1.0 / parts as f64; parts]) {
-            Some(_) if parts == 1 => self.solve_by_newton(solver, parts),
-            // Where steps become too short along a curved edge of h, cuts go on from its parts.
-            Some(_) => self.solve_by_newton(solver, parts).or_else(|error| match error {
+        match self.curvature(outputs, &vec![1.0 / parts as f64; parts]) {
+            Some(_) if parts == 0 => self.solve_by_newton(solver),
+            // Steps may become too short along a curved edge of h.
+            Some(_) => self.solve_by_newton(solver).or_else(|error| match error {
                 SubproblemError::Unusable => self.solve_by_cuts(solver, vec![]),
                 error => Err(error),
             }),
@@ -109,21 +108,31 @@ impl CompositeModel<'_> {
         self.solve_by_cuts(solver, vec![cut, there])
     }
 
-    fn solve_by_newton(&self, solver: &mut EpigraphQpSolver, count: usize) -> Result<CompositeStep, SubproblemError> {
+    /// The curvature of h, or that of its parts with weights.
+    fn curvature(&self, outputs: &Vector, weights: &[f64]) -> Option<Matrix> {
+        let jacobian = &self.linearization.jacobian;
+        match weights {
+            [] => self.outer.curvature(outputs, jacobian),
+            weights => self.outer.parts_curvature(outputs, jacobian, weights),
+        }
+    }
+
+    fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
         let jacobian = &self.linearization.jacobian;
         // Where the base lies outside the set, as before a closing step, the step of length 0 is not feasible.
         let mut step = project(self.set, self.base)? - self.base;
         let mut merit = self.merit(&step);
+        // Multipliers of the parts in the last step, where h has some.
         let mut weights: Option<Vec<f64>> = None;
-        let ids: Vec<u64> = (0..count as u64).collect();
         for _ in 0..MAX_NEWTON {
             still_wanted()?;
-            let parts = self.parts(&step, count)?;
+            let (parts, is_whole) = self.parts(&step)?;
+            let ids: Vec<u64> = (0..parts.len() as u64).collect();
             let highest = parts.iter().map(|part| part.value).fold(f64::NEG_INFINITY, f64::max);
             let offsets: Vec<f64> = parts.iter().map(|part| highest - part.value).collect();
             let of_highest = || offsets.iter().map(|offset| f64::from(u8::from(*offset == 0.0))).collect();
-            let own = weights.take().unwrap_or_else(of_highest);
-            let Some(curvature) = self.outer.parts_curvature(&parts[0].outputs, jacobian, &own) else { break };
+            let own = if is_whole { vec![] } else { weights.take().unwrap_or_else(of_highest) };
+            let Some(curvature) = self.curvature(&parts[0].outputs, &own) else { break };
             let metric = self.with_metric(curvature.clone());
             let slope = |part: &OuterCut| jacobian.tr_mul(&part.subgradient) + self.pull(&step);
             let slopes: Vec<Vector> = parts.iter().map(slope).collect();
@@ -137,31 +146,28 @@ impl CompositeModel<'_> {
             let next = if ends { None } else { self.search(&step, &solution.step, merit, promised) };
             let Some((next, lower)) = next else {
                 let mut cuts = parts;
-                let own = |index: usize| if count == 1 { 1.0 } else { solution.cut_multipliers[index] };
+                let own = |index: usize| if is_whole { 1.0 } else { solution.cut_multipliers[index] };
                 cuts.iter_mut().enumerate().for_each(|(index, cut)| cut.multiplier = own(index));
                 cuts.retain(|cut| cut.multiplier > 0.0);
                 return Ok(self.solved(step, cuts, multipliers(&solution)));
             };
-            weights = (count > 1).then(|| solution.cut_multipliers.clone());
+            weights = Some(solution.cut_multipliers.clone());
             (step, merit) = (next, lower);
         }
         Err(SubproblemError::Unusable)
     }
 
-    /// The parts of h at a step, as cuts of it.
-    fn parts(&self, step: &Vector, count: usize) -> Result<Vec<OuterCut>, SubproblemError> {
+    /// The parts of h at a step as cuts of it; h itself where it has none, and whether that is so.
+    fn parts(&self, step: &Vector) -> Result<(Vec<OuterCut>, bool), SubproblemError> {
         let outputs = self.outputs(step);
-        if count == 1 {
-            let cut = OuterCut::at(self.outer, outputs)?;
-            self.error(&cut)?;
-            return Ok(vec![cut]);
+        let parts = self.outer.parts(&outputs).into_iter();
+        let mut cuts = parts.map(|part| OuterCut::of_part(part, outputs.clone())).collect::<Result<Vec<_>, _>>()?;
+        let is_whole = cuts.is_empty();
+        if is_whole {
+            cuts.push(OuterCut::at(self.outer, outputs)?);
         }
-        let cut = |part: OuterPart| {
-            let cut = OuterCut::of_part(part, outputs.clone())?;
-            self.error(&cut)?;
-            Ok(cut)
-        };
-        self.outer.parts(&outputs).into_iter().map(cut).collect()
+        cuts.iter().try_for_each(|cut| self.error(cut).map(|_| ()))?;
+        Ok((cuts, is_whole))
     }
 
     /// `from` plus `step`, which is halved until the merit falls enough, with the merit there; none where rounding

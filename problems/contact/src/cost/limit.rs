@@ -130,11 +130,6 @@ impl Limit {
         Ok(found)
     }
 
-    /// Whether it holds in a case.
-    pub fn is_of(&self, case: &str) -> bool {
-        self.case.as_deref().is_none_or(|own| own == case)
-    }
-
     /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-6 of the bound.
     pub fn excess(&self, value: f64) -> f64 {
         let excess = match self.side {
@@ -155,13 +150,12 @@ impl Limit {
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for a quantity with kinks that must be at its bound, and for bounds that are not
-    /// finite; those of volumes must be > 0.
+    /// finite; those of volumes and peak pressures must be > 0.
     pub(crate) fn kind(&self) -> Result<ConstraintKind, SceneError> {
-        if self.quantity.is_of_shape() {
-            check_bound("limit of the volume", self.bound)?;
-        }
         let field = || format!("limit of {}", self.quantity.name());
-        SceneError::require(self.bound.is_finite(), field(), self.bound, "a finite number")?;
+        let positive = self.quantity.is_of_shape() || self.quantity == LimitedQuantity::PeakPressure;
+        let allowed = if positive { "a finite number > 0" } else { "a finite number" };
+        SceneError::require(self.bound.is_finite() && (self.bound > 0.0 || !positive), field(), self.bound, allowed)?;
         match (self.quantity.is_of_shape(), self.side) {
             (true, LimitSide::Equal) => Ok(ConstraintKind::SmoothEquality),
             (true, _) => Ok(ConstraintKind::Smooth),
@@ -188,9 +182,4 @@ fn sign(side: LimitSide) -> f64 {
 pub(crate) fn beyond(side: LimitSide, value: f64, bound: f64) -> f64 {
     let beyond = sign(side) * (value - bound);
     if beyond.abs() <= ALLOWANCE * bound.abs() { 0.0 } else { beyond }
-}
-
-/// Refuses a bound that is not finite and > 0.
-pub(crate) fn check_bound(field: &str, bound: f64) -> Result<(), SceneError> {
-    SceneError::require(bound > 0.0 && bound.is_finite(), field, bound, "a finite number > 0")
 }

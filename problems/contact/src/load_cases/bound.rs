@@ -9,7 +9,7 @@ use crate::equilibrium::{ContactProblem, ContactSolver, ContactState};
 use crate::error::SceneError;
 use crate::load_cases::{CaseStates, LoadCases};
 use nonsmooth::composite::OuterFunction;
-use nonsmooth::{Coderivative, ConstraintKind, Cost, CostGradient, OracleError, Vector};
+use nonsmooth::{ConstraintKind, Cost, CostGradient, OracleError, Vector};
 
 /// A limit in one case, on the mesh of that case.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Bound {
             &LimitedQuantity::LoadedArea { pressure } => {
                 Quantity::LoadedArea(PressureCost::new(PressureMeasure::OpenArea { pressure }, problem)?)
             }
-            LimitedQuantity::Field(measure) => Quantity::Field(FieldCost::new(measure.clone(), problem)?),
+            LimitedQuantity::Field(measure) => Quantity::Field(FieldCost::named("limit", measure.clone(), problem)?),
             LimitedQuantity::RelativeVolume => Quantity::Volume(start()),
             LimitedQuantity::Volume => Quantity::Volume(1.0),
         };
@@ -119,16 +119,17 @@ impl Bound {
         control: &Vector,
         states: &CaseStates<S::State>,
     ) -> Result<Linearized, OracleError> {
-        let (shape, state) = (cases.case(self.case), &states[self.case]);
-        let problem = shape.problem();
+        let (problem, state) = (cases.case(self.case).problem(), &states[self.case]);
+        if let Some((value, gradient)) = self.of_shape(problem, control) {
+            return Ok(Linearized { value, gradient, pieces: Vec::new() });
+        }
         let value = self.limit.constraint(self.value(problem, control, state));
         let gradient = match &self.quantity {
-            Quantity::Volume(unit) => volume_gradient(problem, control.as_slice()) / *unit,
             Quantity::Field(cost) => {
                 if let Some(found) = self.by_tangents(cost, cases, states) {
                     return Ok(found);
                 }
-                self.by_adjoint(cases, control, states, &Cost::gradient(cost, control, state))?
+                cases.gradient(self.case, states, &Cost::gradient(cost, control, state))?
             }
             Quantity::LoadedArea(open) => {
                 let outputs = open.outputs(false);
@@ -140,9 +141,10 @@ impl Bound {
                 problem.boundary.points.iter().zip(by_force).for_each(|(point, slope)| dual[point.start] = -slope);
                 let positions = problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area);
                 let explicit = Vector::from_vec(problem.map.pull_back(&positions));
-                self.by_adjoint(cases, control, states, &CostGradient { control: explicit, state: dual })?
+                cases.gradient(self.case, states, &CostGradient { control: explicit, state: dual })?
             }
-            Quantity::PeakPressure => Vector::zeros(control.len()),
+            // A function of the outputs, and one of the shape.
+            Quantity::PeakPressure | Quantity::Volume(_) => Vector::zeros(control.len()),
         };
         Ok(Linearized { value, gradient: gradient * self.limit.sign(), pieces: Vec::new() })
     }
@@ -163,17 +165,5 @@ impl Bound {
         let mut linear = pieces.iter().map(|piece| (self.limit.constraint(piece.value), row(piece)));
         let (value, gradient) = linear.next()?;
         Some(Linearized { value, gradient, pieces: linear.collect() })
-    }
-
-    /// The gradient of the quantity by one adjoint of its case.
-    fn by_adjoint<S: ContactSolver>(
-        &self,
-        cases: &LoadCases<S>,
-        control: &Vector,
-        states: &CaseStates<S::State>,
-        gradient: &CostGradient,
-    ) -> Result<Vector, OracleError> {
-        let dual = cases.dual_of(self.case, &gradient.state);
-        Ok(&gradient.control + cases.coderivative(control, states, &dual)?.element)
     }
 }

@@ -1,8 +1,6 @@
 //! The objective of all cases as a function of their outputs, with the limits that are functions of the pressures.
 
-use crate::cost::{
-    FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, beyond, check_bound,
-};
+use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, beyond};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
 use crate::shape::bending_rows;
@@ -67,19 +65,22 @@ impl CasesCost {
     /// bounds that are not finite and > 0.
     pub fn new(cases: &[WeightedCase<'_>], over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
         let costs = normalised(cases)?;
-        let (mut parts, mut next, mut peaks) = (Vec::new(), 0, Vec::new());
+        let names: Vec<&str> = cases.iter().map(|case| case.name).collect();
+        let limits = Limit::of_cases(limits, &names)?.into_iter();
+        let peaks = limits.filter(|(limit, _)| limit.quantity == LimitedQuantity::PeakPressure);
+        let peak = |(limit, part): (Limit, usize)| {
+            limit.kind()?;
+            Ok(PeakLimit { part, side: limit.side, bound: limit.bound })
+        };
+        let peaks = peaks.map(peak).collect::<Result<Vec<_>, SceneError>>()?;
+        let (mut parts, mut next) = (Vec::new(), 0);
         for (index, (case, cost)) in cases.iter().zip(costs).enumerate() {
             let valid = case.weight > 0.0 && case.weight.is_finite();
             SceneError::require(valid, "case.weight", case.weight, "a finite number > 0")?;
-            let own = limits.iter().filter(|limit| limit.is_of(case.name));
-            let own = own.filter(|limit| limit.quantity == LimitedQuantity::PeakPressure);
-            let own = own.map(|&Limit { side, bound, .. }| PeakLimit { part: index, side, bound }).collect::<Vec<_>>();
-            own.iter().try_for_each(|limit| check_bound("limit of the peak pressure", limit.bound))?;
-            let nodes = case.problem.boundary.points.len();
-            let part = Part::new((case.weight, cost), next, nodes, !own.is_empty());
+            let is_limited = peaks.iter().any(|limit: &PeakLimit| limit.part == index);
+            let part = Part::new((case.weight, cost), next, case.problem.boundary.points.len(), is_limited);
             next = part.own.end.max(part.pressures.end);
             parts.push(part);
-            peaks.extend(own);
         }
         let fairness = fairness(cases)?;
         let is_volume = parts.iter().any(|part| matches!(part.cost, CaseCost::Volume));
@@ -137,6 +138,22 @@ impl CasesCost {
     /// The weight w_k of a case.
     pub fn weight(&self, case: usize) -> f64 {
         self.parts[case].weight
+    }
+
+    /// What a change of every output is compared with: the largest pressure of its case, or its own size; none for the
+    /// bending, which is no state.
+    pub fn sizes(&self, outputs: &Vector) -> Vec<Option<f64>> {
+        let mut sizes: Vec<Option<f64>> = outputs.iter().map(|output| Some(output.abs())).collect();
+        for part in self.parts.iter().filter(|part| part.outputs.is_some()) {
+            let ranges = if part.own.len() > 1 { [&part.own, &part.pressures] } else { [&part.pressures; 2] };
+            for range in ranges {
+                sizes[range.clone()].fill(Some(outputs.rows(range.start, range.len()).amax()));
+            }
+        }
+        if let Some((first, _)) = self.fairness {
+            sizes[first..].fill(None);
+        }
+        sizes
     }
 
     /// Numbers of the outputs that are the pressures of a case; none where they are no outputs.
@@ -212,7 +229,7 @@ fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
     let scene = cases.first().map(|case| &case.problem.scene);
     let known = scene.and_then(|scene| Some((scene.heights()?, scene.blocks()?)));
     let Some((heights, blocks)) = known.filter(|(heights, _)| heights.fairness != 0.0) else { return Ok(None) };
-    let (weight, allowed) = (heights.fairness, "a finite number ≥ 0 (unit of the objective per mm² of bending)");
+    let (weight, allowed) = (heights.fairness, "a finite number ≥ 0 (unit of the objective)");
     SceneError::require(weight > 0.0 && weight.is_finite(), "surface.fairness.weight", weight, allowed)?;
     Ok(Some(bending_rows(&heights.surface()?, blocks.size) * weight.sqrt()))
 }
@@ -289,10 +306,10 @@ impl OuterFunction for CasesCost {
         Some(self.bent(sum, jacobian))
     }
 
-    /// The weighted measures of the cases where the worst counts; else Θ itself.
+    /// The weighted measures of the cases, where the worst of several counts and all are smooth.
     fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
-        if self.volume.is_some() || self.over == Over::Sum || self.parts.len() == 1 {
-            return vec![OuterPart { value: self.value(outputs), gradient: self.subgradient(outputs) }];
+        if self.over == Over::Sum || self.parts.len() == 1 || self.volume.is_some() {
+            return vec![];
         }
         let (bending, slope) = self.bending(outputs);
         let part = |(index, part): (usize, &Part)| OuterPart {
@@ -302,11 +319,7 @@ impl OuterFunction for CasesCost {
         self.parts.iter().enumerate().map(part).collect()
     }
 
-    /// That of all measures; none where one has none.
     fn parts_curvature(&self, outputs: &Vector, jacobian: &Matrix, weights: &[f64]) -> Option<Matrix> {
-        if self.over == Over::Sum || self.parts.len() == 1 {
-            return self.curvature(outputs, jacobian);
-        }
         let mut sum = Matrix::zeros(jacobian.ncols(), jacobian.ncols());
         for (part, weight) in self.parts.iter().zip(weights) {
             sum += self.curvature_of(part, outputs, jacobian)? * (part.weight * weight);

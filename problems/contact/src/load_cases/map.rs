@@ -1,6 +1,6 @@
 //! Controls ↦ the states of all cases, as one state problem of the framework.
 
-use crate::contact_shape::{ContactShape, ContactWarmStart};
+use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 use crate::cost::{FieldCost, volume, volume_gradient};
 use crate::equilibrium::{ContactSolver, TangentsOf};
 use crate::load_cases::case::named;
@@ -36,6 +36,15 @@ struct OneCase<S: ContactSolver> {
     field: Option<FieldCost>,
     /// Whether forward derivatives of the displacements are wanted with the Jacobian.
     with_tangents: bool,
+}
+
+impl<S: ContactSolver> OneCase<S> {
+    fn outputs(&self, state: &ContactState<S::State>) -> Vec<f64> {
+        let mut outputs = if self.with_pressures { self.shape.outputs(state).as_slice().to_vec() } else { Vec::new() };
+        let bodies = state.bodies.as_deref().unwrap_or_default();
+        outputs.extend(self.field.iter().map(|field| field.value_of(bodies)));
+        outputs
+    }
 }
 
 impl<S: ContactSolver> LoadCases<S> {
@@ -96,21 +105,19 @@ impl<S: ContactSolver> LoadCases<S> {
         dual.rows(first, self.dual_count(index)).into_owned()
     }
 
-    /// A dual that is zero in all cases but one.
-    pub(crate) fn dual_of(&self, index: usize, own: &Vector) -> Vector {
-        let counts: Vec<usize> = (0..self.cases.len()).map(|other| self.dual_count(other)).collect();
-        let mut dual = Vector::zeros(counts.iter().sum());
-        dual.rows_mut(counts[..index].iter().sum(), own.len()).copy_from(own);
-        dual
-    }
-
-    /// Outputs of one case.
-    fn case_outputs(&self, index: usize, states: &CaseStates<S::State>) -> Vec<f64> {
-        let (case, state) = (&self.cases[index], &states[index]);
-        let mut outputs = if case.with_pressures { case.shape.outputs(state).as_slice().to_vec() } else { Vec::new() };
-        let bodies = state.bodies.as_deref().unwrap_or_default();
-        outputs.extend(case.field.iter().map(|field| field.value_of(bodies)));
-        outputs
+    /// The gradient of a function of one case, from its explicit derivative and its dual there.
+    ///
+    /// # Errors
+    /// [`OracleError`] of the adjoint, with the name of the case.
+    pub(crate) fn gradient(
+        &self,
+        index: usize,
+        states: &CaseStates<S::State>,
+        dual: &CostGradient,
+    ) -> Result<Vector, OracleError> {
+        let case = &self.cases[index];
+        let found = case.shape.coderivative(&states.control, &states[index], &dual.state);
+        Ok(&dual.control + found.map_err(|error| named(&case.name, error))?.element)
     }
 
     /// The dual and the explicit derivative of Σ weights·outputs of a case.
@@ -168,7 +175,7 @@ impl<S: ContactSolver> LoadCases<S> {
             weights[known.outputs.len()] = 1.0;
             let dual = self.case_dual(index, control, states, &weights);
             let row = dual.control + case.shape.coderivative(control, state, &dual.state)?.element;
-            let value = self.case_outputs(index, states).last().copied().unwrap_or(f64::NAN);
+            let value = states.outputs(index).last().copied().unwrap_or(f64::NAN);
             known.outputs = known.outputs.push(value);
             let last = known.jacobian.nrows();
             known.jacobian = known.jacobian.insert_row(last, 0.0);
@@ -195,7 +202,7 @@ impl<S: ContactSolver> LoadCases<S> {
         };
         let mut first = 0;
         for (index, case) in self.cases.iter().enumerate() {
-            let (state, count) = (&states[index], self.case_outputs(index, states).len());
+            let (state, count) = (&states[index], states.outputs(index).len());
             let own = &weights.as_slice()[first..first + count];
             first += count;
             if own.iter().all(|weight| *weight == 0.0) {
@@ -242,8 +249,10 @@ impl<S: ContactSolver> StateSolver for LoadCases<S> {
     ) -> Result<Self::State, OracleError> {
         self.check(control)?;
         let state = |index: usize| {
-            let start = start.and_then(|start| start.get(index));
-            self.cases[index].shape.solve(control, start, accuracy)
+            let case = &self.cases[index];
+            let state = case.shape.solve(control, start.and_then(|start| start.get(index)), accuracy)?;
+            let outputs = case.outputs(&state);
+            Ok((state, outputs))
         };
         // The others take over the factors of the first.
         let mut states = self.on_all(0..1, state)?;
@@ -289,7 +298,7 @@ impl<S: ContactSolver> Coderivative for LoadCases<S> {
 
 impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
     fn outputs(&self, states: &Self::State) -> Vector {
-        let mut outputs: Vec<f64> = (0..self.cases.len()).flat_map(|index| self.case_outputs(index, states)).collect();
+        let mut outputs: Vec<f64> = (0..self.cases.len()).flat_map(|index| states.outputs(index)).copied().collect();
         if self.with_volume {
             outputs.push(volume(self.cases[0].shape.problem(), states.control.as_slice()));
         }
@@ -300,7 +309,7 @@ impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
     fn output_dual(&self, control: &Vector, states: &Self::State, weights: &Vector) -> CostGradient {
         let (mut explicit, mut duals, mut first) = (Vector::zeros(control.len()), Vec::new(), 0);
         for index in 0..self.cases.len() {
-            let count = self.case_outputs(index, states).len();
+            let count = states.outputs(index).len();
             let own = self.case_dual(index, control, states, &weights.as_slice()[first..first + count]);
             explicit += own.control;
             duals.extend_from_slice(own.state.as_slice());

@@ -11,14 +11,22 @@ pub struct CaseStates<S> {
     /// The controls of the shape.
     pub control: Vector,
     states: Vec<ContactState<S>>,
+    /// The outputs of every case.
+    outputs: Vec<Vec<f64>>,
     /// Forward derivatives with those of the displacements, where a Jacobian has been asked for and a limit needs them.
     tangents: Vec<OnceLock<Tangents>>,
 }
 
 impl<S> CaseStates<S> {
-    pub(super) fn new(control: Vector, states: Vec<ContactState<S>>) -> Self {
+    pub(super) fn new(control: Vector, states: Vec<(ContactState<S>, Vec<f64>)>) -> Self {
         let tangents = states.iter().map(|_| OnceLock::new()).collect();
-        Self { control, states, tangents }
+        let (states, outputs) = states.into_iter().unzip();
+        Self { control, states, outputs, tangents }
+    }
+
+    /// The outputs of a case.
+    pub(super) fn outputs(&self, case: usize) -> &[f64] {
+        &self.outputs[case]
     }
 
     /// The states alone, in the order of the cases.

@@ -1,7 +1,7 @@
 //! How much a height surface bends.
 //!
 //! ```text
-//! αᵀBα = ∫ (∂₁₁F)² + 2 (∂₁₂F)² + (∂₂₂F)²     for the control net: divided differences between Greville abscissae, mm²
+//! αᵀBα = ∫ (∂₁₁F)² + 2 (∂₁₂F)² + (∂₂₂F)²     for the control net: divided differences between Greville abscissae
 //! ```
 //! The net of a plane lies in that plane, and nothing bends; the net exists for every degree, where second derivatives
 //! do not.

@@ -16,7 +16,7 @@ pub struct HeightShape {
     pub bounds: ShapeBounds,
     /// All controls at the start, mm.
     pub start_height: f64,
-    /// What the bending of the surface counts in the objective, unit of Θ per mm² of bending; 0: nothing.
+    /// What the bending of the surface counts in the objective, unit of Θ; the bending has no unit. 0: nothing.
     pub fairness: f64,
 }
 

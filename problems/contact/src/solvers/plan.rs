@@ -29,12 +29,21 @@ pub struct SolverPlan {
     pub clusters: Option<usize>,
     /// What the solver will be asked for: the choice of `auto` depends on it.
     pub wanted: Wanted,
+    /// Number of load cases whose states are held at the same time: memory must do for all of them.
+    pub cases: usize,
 }
 
 impl SolverPlan {
     /// States of a scene by a solver of this kind, the rest by default.
     pub fn new(scene: Scene, kind: SolverKind) -> Self {
-        Self { scene, kind, preconditioner: PreconditionerKind::default(), clusters: None, wanted: Wanted::States }
+        Self {
+            scene,
+            kind,
+            preconditioner: PreconditionerKind::default(),
+            clusters: None,
+            wanted: Wanted::States,
+            cases: 1,
+        }
     }
 
     /// Columns of a Jacobian that is wanted, else 0.

@@ -3,8 +3,8 @@
 //! ```text
 //! min ½ (α + d)ᵀB(α + d)   over   |G d| ≤ ε max σ,   s + S d ≥ 0,   α + d ∈ U
 //! ```
-//! G is the Jacobian of the pressures σ, s > 0 are the gaps of open nodes with their Jacobian S: to first order all
-//! nodes that carry go on as they do, and no other one begins to. Θ does not see what is left.
+//! G is the Jacobian of the pressures σ, case by case, s > 0 are the gaps of open nodes with their Jacobian S: to first
+//! order all nodes that carry go on as they do, and no other one begins to. Θ does not see what is left.
 
 use crate::commands::failure::Failure;
 use crate::commands::solved_shape::ContactObjective;
@@ -13,8 +13,8 @@ use nonsmooth::composite::{Linearization, LinearizationRequest, Linearized};
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric, project};
 use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, Polyhedron, Request, Vector};
 
-/// ε, the change of a pressure over the largest one that counts as none.
-const SAME_PRESSURE: f64 = 1e-3;
+/// ε, the change of a pressure over the largest one that counts as none, and that of any other output over itself.
+const SAME: f64 = 1e-3;
 /// Share of the bending that must go for another shape to be worth a run.
 const WORTH: f64 = 0.2;
 /// Weight of the distance to the shape itself, over the largest entry of B: it decides among planes.
@@ -53,15 +53,20 @@ pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Opt
     let evaluation = objective.evaluate(&request).map_err(Failure::computation)?.into_evaluation();
     let Linearized::Known(linearization) = &evaluation.linearization else { return Ok(None) };
     let set = objective.solver().problem().admissible.polyhedron();
-    let Some(step) = fairest(&matrix, linearization, set, controls) else { return Ok(None) };
+    let sizes = objective.cost().sizes(&linearization.outputs);
+    let Some(step) = fairest(&matrix, (linearization, &sizes), set, controls) else { return Ok(None) };
     let Ok(fair) = project(set, &(controls + step)) else { return Ok(None) };
     let [before, after] = [controls, &fair].map(|controls| controls.dot(&(&matrix * controls)));
     Ok((after < (1.0 - WORTH) * before).then_some(FairShape { controls: fair, before }))
 }
 
-/// The minimiser d of the program.
-fn fairest(matrix: &Matrix, linearization: &Linearization, set: &Polyhedron, controls: &Vector) -> Option<Vector> {
-    let largest = linearization.outputs.amax();
+/// The minimiser d of the program; `sizes`: what changes of the outputs are compared with, where they count.
+fn fairest(
+    matrix: &Matrix,
+    (linearization, sizes): (&Linearization, &[Option<f64>]),
+    set: &Polyhedron,
+    controls: &Vector,
+) -> Option<Vector> {
     let mut rows: Vec<(Vector, [f64; 2])> = Vec::new();
     let mut push = |row: Vector, sides: [f64; 2]| {
         let size = row.amax();
@@ -69,8 +74,8 @@ fn fairest(matrix: &Matrix, linearization: &Linearization, set: &Polyhedron, con
             rows.push((row / size, sides.map(|side| side / size)));
         }
     };
-    for row in linearization.jacobian.row_iter() {
-        push(row.transpose(), [-SAME_PRESSURE * largest, SAME_PRESSURE * largest]);
+    for (row, size) in linearization.jacobian.row_iter().zip(sizes) {
+        size.iter().for_each(|size| push(row.transpose(), [-SAME * size, SAME * size]));
     }
     if let Some(inactive) = &linearization.inactive {
         for (row, slack) in inactive.jacobian.row_iter().zip(&inactive.slacks) {

@@ -199,7 +199,8 @@ fn room(stages: &[MeshStage], kind: RunKind, series: bool) -> u64 {
             MethodName::Bundle => 0,
         };
         let shapes = 2 + if series { SERIES.min(stage.case.optimizer.max_evaluations as u64) } else { 0 };
-        3 * restart_data + shapes * FIELD_BYTES * nodes + REPORT_BYTES * contact + kept
+        let cases = stage.case.cases.len() as u64;
+        cases * (3 * restart_data + shapes * FIELD_BYTES * nodes + REPORT_BYTES * contact + kept)
     });
     let runs = if kind == RunKind::Comparison { 2 } else { 1 };
     runs * (bytes.max().unwrap_or(0) + (4 << 20))
