@@ -45,7 +45,7 @@ fn solved(
     let (positions, _) = shape.position_sensitivity(&state, &objective.cost_gradient(control, &state).state)?;
     let subgradient = Vector::from_vec(shape.problem().map.pull_back(&positions));
     let mut fields = shape.fields(&state)?;
-    fields.contact.set_sensitivity(&positions);
+    fields.contact.set_sensitivity(shape.problem(), &positions);
     println!("Θ = {:.6e}, largest pressure {:.0} MPa", objective.value(&state), shape.outputs(&state).max());
     Ok((fields, subgradient))
 }

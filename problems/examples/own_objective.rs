@@ -38,7 +38,7 @@ impl Cost<ContactState> for Shear {
 /// The scene with all loads times a factor.
 fn load_case(factor: f64) -> Result<ReducedObjective<ContactShape, Shear>, Box<dyn Error>> {
     let mut scene = hertz()?.with_bricks([4; 3], [2; 3]);
-    let loads = scene.upper.iter_mut().flat_map(|upper| &mut upper.body.loads);
+    let loads = scene.bodies.iter_mut().flat_map(|body| &mut body.loads);
     loads.for_each(|load| *load = load.scaled(factor));
     let shape = ContactShape::new(scene, SolverKind::Auto)?;
     let areas = shape.problem().start_rows().areas();

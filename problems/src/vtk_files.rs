@@ -4,19 +4,20 @@
 //! |---|---|---|---|
 //! | `displacement` | points of bodies and contact | mm | displacement u; "warp by vector" shows the deformed shape |
 //! | `von_mises_nodal` | points of bodies | MPa | mean of `von_mises` over the adjoining cells, weighted by volume |
-//! | `body` | cells of bodies | – | 1 lower, 2 upper |
+//! | `body` | cells of bodies | – | number of the body in the scene: 1 lower, 2 upper |
 //! | `subdomain` | cells of bodies | – | subdomain of the total FETI tearing, through all bodies; one per body if not torn |
 //! | `stress` | cells of bodies | MPa | σ at the centre of the cell, components XX, YY, ZZ, XY, YZ, XZ |
 //! | `von_mises` | cells of bodies | MPa | von Mises stress at the centre of the cell |
 //! | `pressure` | points of contact | MPa | λ_N/A, compression positive |
-//! | `normal` | points of contact | – | unit normal from the lower body outwards |
-//! | `traction` | points of contact | MPa | λ_T/A, what the lower body exerts above; only with friction |
-//! | `slip` | points of contact | mm | tangential jump, lower less upper body; only with friction |
+//! | `normal` | points of contact | – | unit normal from the slave (lower) body outwards |
+//! | `traction` | points of contact | MPa | λ_T/A, what the slave (lower) body exerts on the other side; only with friction |
+//! | `slip` | points of contact | mm | tangential jump, slave (lower) less master (upper) body; only with friction |
 //! | `status` | points of contact | – | 0 open, 1 stick, 2 slip (closed and free to slide, if there is no friction) |
 //! | `area` | points of contact | mm² | tributary area A; Σ pressure·A is the normal force |
 //! | `gap` | points of contact | mm | gap before loading |
 //! | `remaining_gap` | points of contact | mm | gap under load |
 //! | `sensitivity` | points of contact | unit of J per mm | n·∂J/∂x of the node; only if asked for |
+//! | `contact` | cells of contact | – | number of the contact in the scene; only where there are several |
 
 use contact::body::mesh::CellKind;
 use contact::equilibrium::ContactStatus;
@@ -113,7 +114,7 @@ pub fn state_files(index: usize, state: &FieldState<'_>) -> Result<StateFiles, F
         return Err(unusable(index, name));
     }
     let (mut files, mut entries) = (Vec::new(), Vec::new());
-    let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact, &fields.bodies[0]))];
+    let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact, &fields.bodies))];
     for (part, (kind, grid)) in parts.into_iter().enumerate() {
         let (grid, file) = (UnstructuredGrid { notes: notes.to_vec(), ..grid }, format!("{name}_{kind}.vtu"));
         let text = unstructured(&grid).map_err(|source| FieldsError::File { state: name.to_owned(), source })?;
@@ -175,15 +176,16 @@ fn joined<T: Copy>(bodies: &[BodyFields], field: impl Fn(&BodyFields) -> &Vec<T>
 
 /// The contact boundary as triangles and quadrilaterals whose normals point outwards. Where supports hold a node along
 /// its normal, there is no contact node: it is open, without force, and has no gap.
-fn contact(contact: &ContactFields, lower: &BodyFields) -> UnstructuredGrid {
+fn contact(contact: &ContactFields, bodies: &[BodyFields]) -> UnstructuredGrid {
     let facets = &contact.facets;
     let numbers = |values: &[f64]| Values::Scalars(spread(contact, values, 0.0));
     let vectors = |values: &[[f64; 3]]| Values::Vectors(spread(contact, values, [0.0; 3]));
-    let at_nodes =
-        |values: &[[f64; 3]]| -> Vec<[f64; 3]> { facets.nodes.iter().map(|&node| values[node as usize]).collect() };
+    let at_nodes = |values: fn(&BodyFields) -> &[[f64; 3]]| -> Vec<[f64; 3]> {
+        facets.bodies.iter().zip(&facets.nodes).map(|(&body, &node)| values(&bodies[body])[node as usize]).collect()
+    };
     let status: Vec<i32> = contact.status.iter().map(|&status| status_code(status)).collect();
     let mut point_data = vec![
-        Array::new("displacement", "mm", Values::Vectors(at_nodes(&lower.displacement))),
+        Array::new("displacement", "mm", Values::Vectors(at_nodes(|body| &body.displacement))),
         Array::new("normal", "", vectors(&contact.normal)),
         Array::new("pressure", "MPa", numbers(&contact.pressure)),
         Array::new("status", "", Values::Integers(spread(contact, &status, 0))),
@@ -208,11 +210,24 @@ fn contact(contact: &ContactFields, lower: &BodyFields) -> UnstructuredGrid {
             sensitivity: derivative of the objective by the position of the node along its normal."
             .to_owned(),
         notes: Vec::new(),
-        points: at_nodes(&lower.positions),
+        points: at_nodes(|body| &body.positions),
         cells: facets.facets.iter().filter_map(facet).collect(),
         point_data,
-        cell_data: Vec::new(),
+        cell_data: contact_numbers(contact),
     }
+}
+
+/// The number of the contact of every facet, from 1 on in the order of the scene, where there are several; 0 where none
+/// of its corners is a contact node.
+fn contact_numbers(contact: &ContactFields) -> Vec<Array> {
+    if contact.contacts.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Vec::new();
+    }
+    let of_facet = |corners: &Vec<usize>| {
+        let point = corners.iter().find_map(|&corner| contact.facets.points[corner]);
+        point.map_or(0, |point| contact.contacts[point] as i32 + 1)
+    };
+    vec![Array::new("contact", "", Values::Integers(contact.facets.facets.iter().map(of_facet).collect()))]
 }
 
 /// Values at the corners of the facets from those at the contact nodes, `rest` at the others.

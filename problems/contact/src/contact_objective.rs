@@ -254,10 +254,13 @@ impl<S: ContactSolver> ContactObjective<S> {
         let problem = self.solver().problem();
         let positions = problem.positions(start.as_slice());
         let rows = positions.as_ref().ok().and_then(|positions| problem.rows(positions).ok());
-        let gaps = rows.iter().flat_map(|rows| rows.gaps());
+        let nodes = rows.iter().flat_map(|rows| rows.contact_nodes()).filter(|node| node.is_covered);
+        let gaps = nodes.map(|node| node.gap);
         let (sum, count) = gaps.fold((0.0, 0), |(sum, count), gap| (sum + gap.abs(), count + 1));
         let length = sum / (2 * count.max(1)) as f64;
-        let extent = smallest_extent(&problem.map.positions(start.as_slice()));
+        let positions = problem.map.positions(start.as_slice());
+        let shaped = problem.map.shaped_bodies().map(|body| smallest_extent(&positions[body]));
+        let extent = shaped.fold(f64::INFINITY, f64::min);
         length.max(LEAST_FIRST_STEP * extent).min(LARGEST_FIRST_STEP * extent)
     }
 
@@ -265,12 +268,20 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// long in them as a change of shape by the first step: bodies that contact holds follow the surface as a whole, so
     /// that Θ hardly depends on its mean height. Other controls are their own coordinates.
     ///
-    /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
+    /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean of the n heights of a body by κ
+    /// and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
-        let count = start.len();
-        let is_height = self.solver().problem().scene.heights().is_some();
-        let stretch = if is_height { (start.mean().abs() / first_step).max(1.0) } else { 1.0 };
-        Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
+        let mut coordinates = Matrix::identity(start.len(), start.len());
+        let mut first = 0;
+        for body in &self.solver().problem().scene.bodies {
+            let count = body.control_count();
+            if body.heights().is_some() {
+                let stretch = (start.rows(first, count).mean().abs() / first_step).max(1.0);
+                coordinates.view_mut((first, first), (count, count)).add_scalar_mut((stretch - 1.0) / count as f64);
+            }
+            first += count;
+        }
+        coordinates
     }
 }
 

@@ -6,7 +6,7 @@
 //! Contact solvers use no trait of the framework: this module and [`crate::cost`] implement them. A dual of the state
 //! has one entry per contact row, node by node: the normal row, then the tangential ones
 //! ([`ContactBoundary::row_count`](crate::equilibrium::ContactBoundary) entries). A cost of the displacements adds
-//! three entries per node of every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them
+//! three entries per node of every body ([`ContactProblem::displacement_count`]); other costs leave them
 //! out, and nothing is computed for them.
 
 use crate::cost::PressureOutputs;
@@ -100,7 +100,7 @@ impl<S: ContactSolver> ContactShape<S> {
 
     /// The controls the scene starts from.
     pub fn start(&self) -> Vector {
-        Vector::from_vec(self.problem().scene.shape.start())
+        Vector::from_vec(self.problem().scene.start())
     }
 
     /// Contraction and condition at a solved shape; see [`Diagnosis`].
@@ -134,12 +134,11 @@ impl<S: ContactSolver> ContactShape<S> {
             left_out.push("tangential multipliers (no friction)");
             left_out.push("nonsymmetric adjoint (no friction)");
         }
-        if scene.upper.is_none() {
+        if scene.bodies.len() == 1 {
             left_out.push("second body (rigid obstacle)");
-        } else {
-            left_out
-                .push("repeated factorisation of the upper body (its shape does not change: factored once per run)");
-            left_out.push("shape derivative of the upper body (its shape does not change)");
+        } else if scene.bodies.iter().any(|body| body.shape.is_none()) {
+            left_out.push("repeated factorisation of bodies of fixed shape (factored once per run)");
+            left_out.push("shape derivative of bodies of fixed shape");
         }
         left_out.extend(self.solver.left_out());
         left_out
@@ -161,7 +160,7 @@ impl<S: ContactSolver> ContactShape<S> {
         Ok((Vector::from_vec(self.problem().map.pull_back(&positions)), error))
     }
 
-    /// As [`ContactShape::pull_back`], for the positions of the nodes of the lower body instead of the controls: with
+    /// As [`ContactShape::pull_back`], for the positions of the nodes of all bodies, in the order of the scene, instead of the controls: with
     /// y* = ∂J/∂y of a cost, ∂J/∂x per node and component, unit of J per mm; 0 for nodes that no control moves.
     ///
     /// # Errors
@@ -205,7 +204,7 @@ impl<S: ContactSolver> ContactShape<S> {
         state.bodies.clone().map_or_else(|| self.solver.bodies(&state.solution).map_err(oracle), Ok)
     }
 
-    /// The derivative of Σ weights·outputs by the positions of the nodes of the lower body at fixed contact forces.
+    /// The derivative of Σ weights·outputs by the positions of the nodes of all bodies at fixed contact forces.
     pub(crate) fn output_position_gradient(
         &self,
         control: &Vector,
@@ -214,7 +213,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ) -> Vec<[f64; 3]> {
         let problem = self.problem();
         let [_, by_area] = self.outputs.pull_back(&state.forces.normal, &state.rows.areas(), weights.as_slice());
-        problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area)
+        problem.pull_back_areas(&state.rows, &problem.map.positions(control.as_slice()), &by_area)
     }
 
     /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows
@@ -246,13 +245,13 @@ impl<S: ContactSolver> ContactShape<S> {
     ) -> Result<Linearization, OracleError> {
         self.check_dimension(control)?;
         let (problem, outputs) = (self.problem(), self.outputs(state));
-        let (points, areas) = (&problem.boundary.points, state.rows.areas());
+        let (points, areas) = (problem.boundary.contact_points(), state.rows.areas());
         let changes = unit_changes(control.len());
         let velocities = problem.map.velocities(&changes);
-        let lower = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
+        let positions = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
         let mut jacobian = Matrix::zeros(outputs.len(), control.len());
         for (k, mut column) in jacobian.column_iter_mut().enumerate() {
-            let moved = lower.as_ref().map(|lower| problem.area_changes(lower, &velocities, k));
+            let moved = positions.as_ref().map(|x| problem.area_changes(&state.rows, x, &velocities, k));
             let forces = |node: usize| tangents.forces[k][points[node].start];
             let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
             column.copy_from_slice(&changes);
@@ -332,7 +331,7 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         let problem = self.problem();
         let [by_force, _] = self.outputs.pull_back(&state.forces.normal, &state.rows.areas(), weights.as_slice());
         let mut dual = Vector::zeros(problem.boundary.row_count);
-        problem.boundary.points.iter().zip(by_force).for_each(|(point, weight)| dual[point.start] = weight);
+        problem.boundary.contact_points().iter().zip(by_force).for_each(|(point, weight)| dual[point.start] = weight);
         let explicit = problem.map.pull_back(&self.output_position_gradient(control, state, weights));
         CostGradient { control: Vector::from_vec(explicit), state: dual }
     }
@@ -359,7 +358,7 @@ fn oracle(error: ContactError) -> OracleError {
     match error {
         // Loops that were ended say no more than that they did not converge.
         _ if interrupted() => OracleError::Interrupted,
-        ContactError::InvertedElement { .. } | ContactError::NoFoot { .. } => {
+        ContactError::InvertedElement { .. } | ContactError::NoFoot { .. } | ContactError::LeftMaster { .. } => {
             OracleError::OutsideDomain { reason: error.to_string() }
         }
         ContactError::NotConverged { solver, residual, iterations, .. } => {

@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_uniform_strain_is_found_as_it_is() {
-        let grid = Grid { cells: [2, 3, 2], size: [4.0, 6.0] };
+        let grid = Grid { cells: [2, 3, 2], corner: [0.0; 2], size: [4.0, 6.0] };
         let columns = grid.column_count();
         let mesh = block(&grid, [1; 3], &vec![1.0; columns], &vec![6.0; columns]).expect("a block");
         // Compressed along x₃ by 3 %, stretched along x₁ by 2 %.

@@ -134,6 +134,17 @@ pub enum ContactError {
         /// Why, in words.
         reason: &'static str,
     },
+    /// A contact node no longer lies opposite to the facets that it had at the start.
+    #[error(
+        "contact node {node} at {place:?} mm slid too far along the master face, or away from the face that it is glued to \
+         (allowed: shapes that move faces along each other by less than two facets, or within the bounds of lattices)"
+    )]
+    LeftMaster {
+        /// The node of the slave body.
+        node: u32,
+        /// Its position, mm.
+        place: [f64; 3],
+    },
     /// The load has a resultant along a motion that nothing holds.
     #[error(
         "no equilibrium: the load has the resultant {resultant:.6e} along {direction}, \

@@ -60,21 +60,22 @@ impl FrictionProblem {
         let rows = problem.rows(&positions)?;
         let points = &problem.boundary.points;
         let nodes = || points.iter().zip(&rows.nodes);
-        let along = |point: &ContactPoint, direction: &[f64; 3]| -> f64 {
-            point.prescribed_jump().iter().zip(direction).map(|(jump, d)| jump * d).sum()
+        let along = |(point, node): (&ContactPoint, &NodeRows), direction: &[f64; 3]| -> f64 {
+            let jump = point.prescribed_jump(&node.weights);
+            jump.iter().zip(direction).map(|(jump, d)| jump * d).sum()
         };
         let slip = |(point, node): (&ContactPoint, &NodeRows)| {
-            tangents(node.all_directions(&point.free)).map(|tangent| -along(point, &tangent))
+            tangents(node.all_directions(&point.free)).map(|tangent| -along((point, node), &tangent))
         };
         let mut this = Self {
             unknowns: Vec::new(),
             stiffness: Vec::new(),
             load: Vec::new(),
             contact: Vec::new(),
-            gaps: nodes().map(|(point, node)| node.gap - along(point, &node.directions[0])).collect(),
+            gaps: nodes().map(|(point, node)| node.gap - along((point, node), &node.directions[0])).collect(),
             slips: nodes().map(slip).collect(),
             friction: points.iter().map(|point| point.friction).collect(),
-            places: points.iter().map(|point| positions[0][point.node as usize]).collect(),
+            places: points.iter().map(|point| positions[point.body][point.node as usize]).collect(),
             areas: rows.areas(),
             normals: rows.nodes.iter().map(|node| node.normal).collect(),
             tangents: nodes().map(|(point, node)| tangents(node.all_directions(&point.free))).collect(),
@@ -130,12 +131,13 @@ impl FrictionProblem {
         (index, (point, row)): (usize, (&ContactPoint, &NodeRows)),
         (body, piece, axes, numbers): (usize, &Piece, &NodalAxes, &[Option<usize>]),
     ) {
-        for side in point.sides.iter().filter(|side| side.body == body) {
+        let sides = point.sides.iter().zip(&row.weights);
+        for (side, weight) in sides.filter(|(side, weight)| side.body == body && **weight != 0.0) {
             let Some(place) = piece.local(side.node) else { continue };
             for (offset, direction) in row.all_directions(&point.free).into_iter().enumerate() {
                 let turned = axes.turn_at(place, direction);
                 for axis in (0..3).filter(|axis| turned[*axis] != 0.0) {
-                    let entry = |number| (ROWS * index + offset, number, -side.weight * turned[axis]);
+                    let entry = |number| (ROWS * index + offset, number, -weight * turned[axis]);
                     self.contact.extend(numbers[3 * place + axis].map(entry));
                 }
             }

@@ -72,6 +72,7 @@ pub mod friction_problem;
 pub mod linear;
 pub mod load_cases;
 pub mod memory;
+mod mortar;
 pub mod names;
 pub mod plausibility;
 pub mod qp;

@@ -2,7 +2,7 @@
 
 use crate::communication::Communication;
 use crate::error::SceneError;
-use crate::scene::{BodyScene, Geometry, Scene, SceneSize};
+use crate::scene::{BodyScene, BodySize, Geometry, Scene, SceneSize};
 use crate::solvers::{SolverKind, SolverPlan};
 use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
 use crate::work_estimate::factor_values;
@@ -35,35 +35,40 @@ pub(crate) fn estimate(
     columns: usize,
     processes: usize,
 ) -> f64 {
-    let SceneSize { bodies, nodes, piece_nodes, contact_nodes, contact_pieces, .. } = SceneSize::of(scene);
-    let contact = 3.0 * contact_nodes;
+    let size = SceneSize::of(scene);
+    let contact = 3.0 * size.contact_nodes;
     if kind == SolverKind::Direct {
         // Factor with the contact dofs last (some 1.3 times the fill), Schur complements and compliances, the Newton
         // matrix and its LU.
-        let dofs = 3.0 * nodes;
-        let dense = (bodies * 2.0 + 3.0) * contact * contact;
-        return NUMBER * (bodies * (1.3 * factor_values(dofs) + STIFFNESS_PER_DOF * dofs) + dense);
+        let of_body = |body: &BodySize| {
+            let (dofs, own) = (3.0 * body.nodes, 3.0 * body.contact_nodes);
+            1.3 * factor_values(dofs) + STIFFNESS_PER_DOF * dofs + 2.0 * own * own
+        };
+        return NUMBER * (size.sum(of_body) + 3.0 * contact * contact);
     }
-    let pieces = bodies * SceneSize::of(scene).pieces;
-    let dofs = 3.0 * piece_nodes;
+    let pieces = size.sum(|body| body.pieces);
     let interior = if preconditioner == PreconditionerKind::Dirichlet { INTERIOR_SHARE } else { 0.0 };
     let near = |body: &BodyScene| {
         let others = body.materials.iter().map(|(_, material)| material);
         others.chain([&body.material]).any(|material| material.compressible_neighbour().is_some())
     };
-    let matrices = if near(&scene.lower) || scene.upper.iter().any(|upper| near(&upper.body)) { 2.0 } else { 1.0 };
-    let per_piece =
-        factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs;
-    let glued = (pieces * dofs - bodies * 3.0 * nodes).max(0.0);
+    let matrices = if scene.bodies.iter().any(near) { 2.0 } else { 1.0 };
+    let of_piece = |body: &BodySize| {
+        let dofs = 3.0 * body.piece_nodes;
+        factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs
+    };
+    let per_piece = size.sum(|body| body.pieces * of_piece(body)) / pieces;
+    let torn_dofs = size.sum(|body| body.pieces * 3.0 * body.piece_nodes);
+    let glued = size.sum(|body| (3.0 * (body.pieces * body.piece_nodes - body.nodes)).max(0.0));
     // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; those of the
     // contact subdomains take six dense matrices: constant part, its factor, two active sets with their LU.
-    let held = 6.0 * bodies * contact_pieces;
+    let held = 6.0 * size.sum(|body| body.contact_pieces);
     let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 6.0 * held * held;
     let (dual, torn) = TANGENT_VECTORS;
     // Processes share factors, torn vectors and rows of B_E; every process has the contact rows and the coarse problem.
     let owned = (pieces / processes as f64).ceil();
     let rows = glued * owned / pieces + contact;
-    let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * owned * dofs);
+    let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * owned * torn_dofs / pieces);
     NUMBER * (owned * per_piece + DUAL_VECTORS * rows + coarse) + tangents
 }
 
@@ -105,14 +110,25 @@ fn compare(scene: &Scene, needed: f64, available: Option<f64>) -> Result<(), Sce
     match available {
         Some(available) if needed > USABLE * available => {
             let joined = |counts: [usize; 3]| counts.map(|count| count.to_string()).join("x");
-            let (field, what) = match &scene.geometry {
-                Geometry::Blocks(blocks) => {
-                    let (bricks, subdomains) = (joined(blocks.bricks), joined(blocks.subdomains));
-                    ("mesh.bricks", format!("{bricks} bricks with {subdomains} subdomains"))
+            let nodes = |body: &BodySize| body.nodes;
+            let largest = SceneSize::of(scene)
+                .bodies
+                .iter()
+                .map(nodes)
+                .enumerate()
+                .fold((0, 0.0), |largest, other| if other.1 > largest.1 { other } else { largest });
+            let body = &scene.bodies[largest.0];
+            let (field, what) = match &body.geometry {
+                Geometry::Block(block) => {
+                    let (bricks, subdomains) = (joined(block.bricks), joined(block.subdomains));
+                    let field =
+                        if scene.is_of_blocks() { "mesh.bricks".to_owned() } else { format!("{}.bricks", body.name) };
+                    (field, format!("{bricks} bricks with {subdomains} subdomains"))
                 }
                 Geometry::Mesh(geometry) => {
                     let (nodes, cells) = (geometry.mesh.node_count(), geometry.mesh.cell_count());
-                    ("body.mesh", format!("{nodes} nodes and {cells} cells in about {} pieces", geometry.piece_count()))
+                    let pieces = geometry.piece_count();
+                    (format!("{}.mesh", body.name), format!("{nodes} nodes and {cells} cells in about {pieces} pieces"))
                 }
             };
             let allowed = format!("what fits into the {:.1} GB of memory available", available / 1e9);

@@ -94,6 +94,7 @@ pub fn warnings(
         )
     });
     locking(problem, &mut found);
+    uncovered(problem, &mut found);
     deformation(bodies, &mut found);
     let facets = problem.contact_facets();
     obstacle(problem, bodies, (&facets, forces), &mut found);
@@ -115,6 +116,20 @@ fn locking(problem: &ContactProblem, found: &mut Vec<Warning>) {
              {name}.material.formulation = \"mean-dilatation\""
         );
         found.push(Warning { code: "volume-locking", text });
+    }
+}
+
+/// Slave nodes that the master does not lie opposite to.
+fn uncovered(problem: &ContactProblem, found: &mut Vec<Warning>) {
+    for (contact, count) in problem.uncovered_nodes() {
+        let face = &problem.scene.contacts[contact].slave;
+        let name = &problem.scene.bodies[face.body].name;
+        let text = format!(
+            "{count} nodes of the slave face \"{}\" of {name} carry no force at the start: the master face covers less \
+             than a thousandth of their area",
+            face.face
+        );
+        found.push(Warning { code: "overhanging-face", text });
     }
 }
 
@@ -152,13 +167,17 @@ fn obstacle(
     (facets, forces): (&ContactFacets, &ContactForces),
     found: &mut Vec<Warning>,
 ) {
-    let Some(lower) = bodies.first() else { return };
+    if bodies.is_empty() {
+        return;
+    }
     let closed = |place: usize| facets.points[place].is_some_and(|point| forces.status[point] != ContactStatus::Open);
     let in_zone = facets.edges().into_iter().filter(|([a, b], _)| closed(*a) || closed(*b));
     let turns: Vec<Turns> = in_zone
         .filter_map(|(ends, _)| {
-            let ends = ends.map(|place| lower.positions[facets.nodes[place] as usize]);
-            Turns::along(ends, |x| problem.geometry.counter_normal(x))
+            let point = ends.iter().find_map(|place| facets.points[*place])?;
+            let contact = problem.boundary.points[point].contact;
+            let ends = ends.map(|place| bodies[facets.bodies[place]].positions[facets.nodes[place] as usize]);
+            Turns::along(ends, |x| problem.geometry.counter_normal(contact, x))
         })
         .collect();
     let turn = turns.iter().map(|turns| turns.angle).fold(0.0, f64::max).to_degrees();
@@ -267,7 +286,8 @@ fn zone(
     let inner = (0..pressures.len()).filter(|&node| !on_edge[node] && !beside_open[node]);
     let inner = inner.map(|node| pressures[node]).fold(0.0, f64::max);
     warn(found, pressures[peak] > (1.0 + UNIFORM) * inner, "peak-at-edge", || {
-        let [x1, x2, x3] = problem.start_positions()[0][problem.boundary.points[peak].node as usize];
+        let point = &problem.boundary.points[peak];
+        let [x1, x2, x3] = problem.start_positions()[point.body][point.node as usize];
         let where_it_is = if on_edge[peak] { "edge of the contact face" } else { "edge of the contact zone" };
         format!(
             "the pressure peaks at the {where_it_is}, at ({x1:.2}, {x2:.2}, {x3:.2}) mm: it may grow with every refinement of \
@@ -279,7 +299,7 @@ fn zone(
 /// Whether supports hold both ends of an edge of the contact face against leaving it across the edge: the edge lies in
 /// a plane of symmetry then.
 fn is_symmetry(problem: &ContactProblem, facets: &ContactFacets, ends: [usize; 2], facet: usize) -> bool {
-    let body = &problem.bodies[0];
+    let body = &problem.bodies[facets.bodies[ends[0]]];
     let positions = body.mesh.nodes();
     let at = |place: usize| Vector3::from(positions[facets.nodes[place] as usize]);
     let corners = &facets.facets[facet];

@@ -8,7 +8,7 @@
 //! repeated.
 
 use crate::equilibrium::Work;
-use crate::scene::{Scene, SceneSize};
+use crate::scene::{BodySize, Scene, SceneSize};
 use crate::solvers::SolverKind;
 
 /// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of
@@ -44,14 +44,13 @@ impl WorkEstimate {
     pub fn of(scene: &Scene) -> Self {
         let size = SceneSize::of(scene);
         let factorization = |values: f64, dofs: f64| 2.0 * values * values / dofs;
-        let (dofs, piece) = (3.0 * size.nodes, 3.0 * size.piece_nodes);
-        let (bodies, pieces, nodes) = (size.bodies, size.bodies * size.pieces, size.contact_nodes);
-        let rows = nodes * if scene.contact.has_friction() { 3.0 } else { 1.0 };
-        let whole = factorization(CONTACT_LAST * factor_values(dofs), dofs);
+        let rows = size.contact_nodes * if scene.has_friction() { 3.0 } else { 1.0 };
+        let whole = |dofs: f64| factorization(CONTACT_LAST * factor_values(dofs), dofs);
+        let piece = |body: &BodySize| 3.0 * body.piece_nodes;
         Self {
-            torn_factorization: pieces * factorization(factor_values(piece), piece),
-            product: pieces * 4.0 * factor_values(piece),
-            condensation: bodies * (whole + 8.0 / 3.0 * (3.0 * nodes).powi(3)),
+            torn_factorization: size.sum(|body| body.pieces * factorization(factor_values(piece(body)), piece(body))),
+            product: size.sum(|body| body.pieces * 4.0 * factor_values(piece(body))),
+            condensation: size.sum(|body| whole(3.0 * body.nodes) + 8.0 / 3.0 * (3.0 * body.contact_nodes).powi(3)),
             condensed_step: 2.0 / 3.0 * rows.powi(3),
         }
     }

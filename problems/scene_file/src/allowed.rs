@@ -69,7 +69,11 @@ pub(super) fn default(path: &str) -> String {
 
 /// The field at a path.
 fn field(path: &str) -> Option<Node<'static>> {
-    path.split('.').try_fold(Node::root(), |node, name| node.field(name))
+    path.split('.').try_fold(Node::root(), |node, name| match name.split_once('[') {
+        None => node.field(name),
+        // Entries of a list are alike.
+        Some((name, _)) => node.field(name)?.items(),
+    })
 }
 
 /// Whether a number lies in the range of a place.

@@ -2,7 +2,7 @@
 
 use contact::body::elasticity::{Formulation, Material};
 use contact::error::SceneError;
-use contact::scene::{BodyScene, Held, Load, LoadKind, Support};
+use contact::scene::{BodyScene, Geometry, Held, Load, LoadKind, Support};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -205,43 +205,43 @@ impl UnitName {
 }
 
 impl MaterialSection {
-    fn material(&self) -> Result<Material, SceneError> {
+    pub(super) fn material(&self) -> Result<Material, SceneError> {
         Ok(Material::new(self.young_modulus, self.poisson_ratio)?.with_formulation(self.formulation))
     }
 }
 
-impl MeshBodySection {
-    /// The body of the scene.
-    ///
-    /// # Errors
-    /// As [`body`].
-    pub(super) fn scene(&self) -> Result<BodyScene, SceneError> {
-        let of_volume = |section: &VolumeMaterialSection| {
-            let material = Material::new(section.young_modulus, section.poisson_ratio)?;
-            Ok((section.volume.clone(), material.with_formulation(section.formulation)))
-        };
-        let materials = self.materials.iter().map(of_volume).collect::<Result<_, SceneError>>()?;
-        Ok(BodyScene { materials, ..body("body", &self.material, &self.supports, &self.loads)? })
-    }
-}
-
-/// The body of a scene; `name` stands in messages.
+/// A body of a scene that keeps its shape; its name stands in messages.
 ///
 /// # Errors
 /// [`SceneError`] for elastic constants outside their range, for displacements of components that are not held, and for
 /// loads of no kind or of two.
 pub(super) fn body(
     name: &str,
-    material: &MaterialSection,
+    geometry: Geometry,
+    (material, materials): (MaterialSection, &[VolumeMaterialSection]),
     supports: &[SupportSection],
     loads: &[LoadSection],
 ) -> Result<BodyScene, SceneError> {
-    let supports = supports.iter().enumerate();
+    let of_volume = |section: &VolumeMaterialSection| {
+        let material = Material::new(section.young_modulus, section.poisson_ratio)?;
+        Ok((section.volume.clone(), material.with_formulation(section.formulation)))
+    };
+    let materials = materials.iter().map(of_volume).collect::<Result<_, SceneError>>()?;
+    let (supports, loads) = (self::supports(name, supports)?, self::loads(name, loads)?);
+    Ok(BodyScene { materials, supports, loads, ..BodyScene::new(name, geometry, material.material()?) })
+}
+
+/// The supports of a body that messages call `name`.
+pub(super) fn supports(name: &str, sections: &[SupportSection]) -> Result<Vec<Support>, SceneError> {
+    let supports = sections.iter().enumerate();
     let supports = supports.map(|(index, section)| support(&format!("{name}.supports[{index}]"), section));
-    let supports = supports.collect::<Result<Vec<_>, SceneError>>()?.concat();
-    let loads = loads.iter().enumerate().map(|(index, section)| load(&format!("{name}.loads[{index}]"), section));
-    let loads = loads.collect::<Result<_, SceneError>>()?;
-    Ok(BodyScene::new(material.material()?, supports, loads))
+    Ok(supports.collect::<Result<Vec<_>, SceneError>>()?.concat())
+}
+
+/// The loads of a body that messages call `name`.
+pub(super) fn loads(name: &str, sections: &[LoadSection]) -> Result<Vec<Load>, SceneError> {
+    let loads = sections.iter().enumerate();
+    loads.map(|(index, section)| load(&format!("{name}.loads[{index}]"), section)).collect()
 }
 
 /// The supports of a section: one of components, one along the normal.

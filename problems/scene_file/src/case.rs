@@ -1,16 +1,12 @@
 //! From a scene file to the scene and the settings of a run.
 
-use crate::bodies::body;
-use crate::grid_file;
+use crate::either::Either;
+use crate::general::general_scene;
 use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
-use crate::mesh_file::{self, MeshFile};
-use crate::{
-    AccuracyName, CounterSection, MeshBodySection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile,
-    SplineName, StartSection, SurfaceSection, UpperSection,
-};
-use contact::body::load_size;
-use contact::body::mesh::{Mesh, bounding_box};
+use crate::mesh_file;
+use crate::short_form::{block_scene, mesh_scene};
+use crate::{AccuracyName, MethodName, Objective, OptimizerSection, OutputSection, SceneFile};
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
 use contact::cost::{Limit, Measure};
@@ -18,16 +14,11 @@ use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::load_cases::{Bound, CasesCost, LoadCase, Over, WeightedCase};
 use contact::names::find;
-use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, MeshGeometry, Scene, UpperBody};
-use contact::shape::{HeightShape, ShapeScene, SplineKind};
+use contact::scene::{Block, Scene};
 use contact::solvers::{Processes, SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
 use exchange::gmsh::GmshMesh;
 use std::path::Path;
-use std::sync::Arc;
-
-/// Degree of the paper's B-splines.
-const DEFAULT_DEGREE: usize = 3;
 
 /// The tolerance of an optimization with some limits.
 fn usual_tolerance(limits: &[Limit]) -> f64 {
@@ -74,7 +65,10 @@ impl Case {
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn new(file: &SceneFile, folder: &Path) -> Result<Self, SceneError> {
         let parts = match &file.body {
-            Some(body) => mesh_scene(file, body, folder, || mesh_file::read(&folder.join(&body.mesh), body.unit))?,
+            Some(Either::Several(bodies)) => general_scene(file, bodies, folder)?,
+            Some(Either::One(body)) => {
+                mesh_scene(file, body, folder, || mesh_file::read(&folder.join(&body.mesh), body.unit))?
+            }
             None => block_scene(file, folder)?,
         };
         Self::of_parts(file, folder, parts)
@@ -85,7 +79,7 @@ impl Case {
     /// # Errors
     /// As [`new`](Self::new); cells are named by their tags.
     pub fn with_mesh(file: &SceneFile, folder: &Path, mesh: &GmshMesh) -> Result<Self, SceneError> {
-        let body = required("body", file.body.as_ref(), "a table, for the body of the mesh")?;
+        let body = required("body", file.mesh_body(), "a table, for the body of the mesh")?;
         let mesh = || mesh_file::convert(mesh, body.unit, &body.mesh);
         Self::of_parts(file, folder, mesh_scene(file, body, folder, mesh)?)
     }
@@ -93,11 +87,11 @@ impl Case {
     fn of_parts(file: &SceneFile, folder: &Path, parts: Parts) -> Result<Self, SceneError> {
         let Parts { scene, start, notes } = parts;
         scene.validate()?;
-        check_continuation(&file.optimizer, file.body.is_some())?;
+        check_continuation(&file.optimizer, !scene.is_of_blocks())?;
         let objective = Objective::new(&file.objective, file.size, folder)?;
-        if let (Objective::Deviation(wanted), Some(blocks)) = (&objective, scene.blocks()) {
-            let height = scene.heights().map_or(0.0, |heights| heights.start_height);
-            wanted.at(&blocks.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
+        if let (Objective::Deviation(wanted), Some((block, heights))) = (&objective, scene.shaped_block()) {
+            let height = heights.start_height;
+            wanted.at(&block.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
         let cases = cases(file, &scene)?;
         let limits = limits(&file.limit, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
@@ -191,7 +185,7 @@ impl Case {
 
     /// The case with changed blocks in all its scenes; a scene of a mesh stays as it is.
     #[must_use]
-    pub fn with_blocks(mut self, change: impl Fn(&mut Blocks)) -> Self {
+    pub fn with_blocks(mut self, change: impl Fn(&mut Block)) -> Self {
         self.scene = self.scene.with_blocks(&change);
         let changed = |case: CaseScene| CaseScene { scene: case.scene.clone().with_blocks(&change), ..case };
         self.cases = self.cases.into_iter().map(changed).collect();
@@ -200,194 +194,15 @@ impl Case {
 }
 
 /// A scene with what goes beside it.
-struct Parts {
-    scene: Scene,
-    start: Option<Vec<f64>>,
-    notes: Vec<String>,
+pub(crate) struct Parts {
+    pub scene: Scene,
+    pub start: Option<Vec<f64>>,
+    pub notes: Vec<String>,
 }
 
 /// A field that a scene of blocks, or of a mesh, must have.
-fn required<'f, T>(field: &str, value: Option<&'f T>, allowed: &str) -> Result<&'f T, SceneError> {
+pub(crate) fn required<'f, T>(field: &str, value: Option<&'f T>, allowed: &str) -> Result<&'f T, SceneError> {
     value.ok_or_else(|| SceneError::out_of_range(field, "missing", allowed))
-}
-
-/// The scene of blocks.
-fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, SceneError> {
-    let block = "a table, for a block (or [body] with a mesh)";
-    let size = *required("size", file.size.as_ref(), "the lengths of the base of a block (or [body] with a mesh)")?;
-    let lower = required("lower", file.lower.as_ref(), block)?;
-    let surface = required("surface", file.surface.as_ref(), block)?;
-    let admissible = required("admissible", file.admissible.as_ref(), block)?;
-    if file.lattice.is_some() {
-        return Err(SceneError::out_of_range("lattice", "a table", "none for a block, which surface shapes"));
-    }
-    let control_points = surface.control_points;
-    let (start_height, start) = start(&surface.start, size, control_points, folder)?;
-    let upper = |upper: &UpperSection| {
-        let body = body("upper", &upper.material, &upper.supports, &upper.loads)?;
-        Ok::<_, SceneError>(UpperBody { body, top: upper.top })
-    };
-    let subdomains = file.mesh.subdomains.unwrap_or_else(|| file.mesh.bricks.map(default_subdomains));
-    let scene = Scene {
-        name: file.name.clone(),
-        geometry: Geometry::Blocks(Blocks { size, bricks: file.mesh.bricks, subdomains }),
-        lower: body("lower", &lower.material, &lower.supports, &lower.loads)?,
-        upper: file.upper.as_ref().map(upper).transpose()?,
-        counter_surface: counter_surface(&file.counter_surface, Some(size), folder)?,
-        contact: file.contact.scene("top", file.friction, file.upper.is_some()),
-        shape: ShapeScene::Heights(HeightShape {
-            spline: spline(surface)?,
-            control_points,
-            bounds: admissible.bounds(),
-            start_height,
-            fairness: surface.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
-        }),
-    };
-    Ok(Parts { scene, start, notes: Vec::new() })
-}
-
-/// The scene of a mesh.
-fn mesh_scene(
-    file: &SceneFile,
-    body: &MeshBodySection,
-    folder: &Path,
-    mesh: impl FnOnce() -> Result<MeshFile, SceneError>,
-) -> Result<Parts, SceneError> {
-    for (field, given) in [
-        ("size", file.size.is_some()),
-        ("lower", file.lower.is_some()),
-        ("upper", file.upper.is_some()),
-        ("surface", file.surface.is_some()),
-        ("admissible", file.admissible.is_some()),
-    ] {
-        if given {
-            return Err(SceneError::out_of_range(
-                field,
-                "a value",
-                "none beside [body], which has a mesh and a lattice",
-            ));
-        }
-    }
-    let MeshFile { mesh, mut notes } = mesh()?;
-    let face = required("contact.face", file.contact.face.as_ref(), "the physical surface of the mesh that may touch")?;
-    let lattice = required("lattice", file.lattice.as_ref(), "a table, for the shapes of a mesh")?;
-    let lower = body.scene()?;
-    notes.extend(doubts_of_unit(&mesh, &lower)?);
-    let scene = Scene {
-        name: file.name.clone(),
-        lower,
-        upper: None,
-        counter_surface: counter_surface(&file.counter_surface, None, folder)?,
-        contact: file.contact.scene(face, file.friction, false),
-        shape: ShapeScene::Lattice(lattice.shape(&mesh)?),
-        geometry: Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: body.pieces }),
-    };
-    Ok(Parts { scene, start: None, notes })
-}
-
-/// Extents of a body, mm, outside which its unit is doubtful.
-const USUAL_EXTENTS: [f64; 2] = [1.0, 2e4];
-/// Nominal strain above which loads, unit or elastic constants are doubtful: linear elasticity ends before.
-const USUAL_STRAIN: f64 = 0.05;
-
-/// Signs of a mesh in another unit than the scene says: an unusual extent, and loads that strain the body too much.
-fn doubts_of_unit(mesh: &Mesh, body: &BodyScene) -> Result<Vec<String>, SceneError> {
-    let [least, most] = bounding_box(mesh.nodes());
-    let mut extents = [0, 1, 2].map(|axis| most[axis] - least[axis]);
-    extents.sort_by(f64::total_cmp);
-    let mut doubts = Vec::new();
-    if extents[2] < USUAL_EXTENTS[0] || extents[2] > USUAL_EXTENTS[1] {
-        doubts.push(format!(
-            "the body is {:.3e} mm long: is body.unit the unit of the mesh? (\"mm\", \"cm\", \"m\" or \"inch\")",
-            extents[2]
-        ));
-    }
-    let (load, section) = (load_size(mesh, &body.loads)?, extents[0] * extents[1]);
-    let strain = load / section / body.material.young_modulus();
-    if strain > USUAL_STRAIN {
-        doubts.push(format!(
-            "the loads, {load:.3e} N in all, over the section of the body, {section:.3e} mm^2, strain it by {:.1e} %: are \
-             body.unit, the loads (N, MPa) and young_modulus (MPa) what they should be?",
-            100.0 * strain
-        ));
-    }
-    Ok(doubts)
-}
-
-/// 2 subdomains per edge, or, where 2 does not divide the bricks, the divisor that leaves closest to six bricks.
-pub fn default_subdomains(bricks: usize) -> usize {
-    if bricks.is_multiple_of(2) {
-        return 2;
-    }
-    let divisors = (1..=bricks).filter(|count| bricks.is_multiple_of(*count));
-    let distance = |count: &usize| {
-        let bricks = (bricks / count) as f64 / 6.0;
-        bricks.max(1.0 / bricks)
-    };
-    divisors.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
-}
-
-fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
-    match (section.spline, section.degree) {
-        (SplineName::Bspline, degree) => Ok(SplineKind::BSpline(degree.unwrap_or(DEFAULT_DEGREE))),
-        (SplineName::Bezier, None) => Ok(SplineKind::Bezier),
-        (SplineName::Bezier, Some(degree)) => {
-            Err(SceneError::out_of_range("surface.degree", degree, "no degree with surface.spline = \"bezier\""))
-        }
-    }
-}
-
-fn counter_surface(
-    section: &CounterSection,
-    base: Option<[f64; 2]>,
-    folder: &Path,
-) -> Result<CounterSurface, SceneError> {
-    Ok(match section {
-        &CounterSection::Plane { height } => CounterSurface::Plane { height },
-        &CounterSection::Waves { base, first, second, period } => {
-            CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] }
-        }
-        &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius, centre: [0.0; 2] },
-        CounterSection::Grid { file, origin, size } => {
-            let size = size.or(base);
-            let size = *required("counter_surface.size", size.as_ref(), "the lengths of the grid along x1, x2 (mm)")?;
-            let grid = grid_file::read(&folder.join(file), size, "mm")?;
-            CounterSurface::Grid(grid.at(origin.unwrap_or_default()))
-        }
-        &CounterSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
-        &CounterSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
-        &CounterSection::Cylinder { point, axis, radius, side } => {
-            CounterSurface::Cylinder { point, axis, radius, side }
-        }
-    })
-}
-
-/// Start height of the scene, and the controls where they differ from it.
-fn start(
-    section: &StartSection,
-    size: [f64; 2],
-    counts: [usize; 2],
-    folder: &Path,
-) -> Result<(f64, Option<Vec<f64>>), SceneError> {
-    let sampled = |surface: CounterSurface| {
-        let along = |axis: usize, index: usize| size[axis] * index as f64 / (counts[axis].max(2) - 1) as f64;
-        let places = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
-        places.map(|(i, j)| surface.height(along(0, i), along(1, j))).collect::<Vec<f64>>()
-    };
-    let controls = match section {
-        &StartSection::Plane { height } => return Ok((height, None)),
-        &StartSection::Waves { base, first, second, period } => {
-            sampled(CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] })
-        }
-        StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?)),
-        StartSection::Controls { heights } => heights.clone(),
-    };
-    let expected = counts[0] * counts[1];
-    if controls.len() != expected {
-        return Err(SceneError::WrongCount { what: "surface.start.heights".into(), expected, found: controls.len() });
-    }
-    let mean = controls.iter().sum::<f64>() / expected as f64;
-    Ok((mean, Some(controls)))
 }
 
 /// A limit of a case that is solved with an equal one, as a limit of that one.
@@ -436,15 +251,5 @@ fn check_continuation(optimizer: &OptimizerSection, is_mesh: bool) -> Result<(),
             format!("growing meshes, here > {}", pair[0]),
         )),
         None => Ok(()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tearing_of_meshes_that_two_does_not_divide() {
-        assert_eq!([12, 35, 25, 9, 7, 13, 1].map(default_subdomains), [2, 5, 5, 1, 1, 1, 1]);
     }
 }

@@ -1,6 +1,6 @@
 //! Contact of a scene file: what touches, along which normals, over which areas, with which friction.
 
-use contact::scene::{AreaKind, ContactScene, NormalKind};
+use contact::scene::{AreaKind, BodyFace, ContactKind, ContactScene, Master, NormalKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +11,9 @@ pub struct ContactSection {
     /// The face that may touch what is above it. Default "top" for blocks; required for a mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub face: Option<String>,
-    /// Along which normals contact acts: those of the counter surface at the points nearest to the contact nodes, or x3
-    /// as in the paper. Default "surface" with a rigid obstacle, "x3" between two bodies, which take no other.
+    /// Along which normals contact acts: those of the counter surface at the points nearest to the contact nodes
+    /// (between two blocks the averaged ones of the lower block), or x3 as in the paper. Default "surface" with a rigid
+    /// obstacle, "x3" between two blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<NormalKind>,
     /// How the areas of contact nodes are measured: on the surface itself, or projected along x3 as in the paper.
@@ -41,13 +42,15 @@ pub struct FrictionSection {
 }
 
 impl ContactSection {
-    /// The contact of a scene whose contact face has this name by default.
-    pub(crate) fn scene(&self, face: &str, friction: f64, two_bodies: bool) -> ContactScene {
-        let usual = if two_bodies { NormalKind::X3 } else { NormalKind::Surface };
+    /// The contact of the first body of a scene, whose contact face has this name by default.
+    pub(crate) fn scene(&self, face: &str, friction: f64, master: Master) -> ContactScene {
+        let usual = if let Master::Body(_) = master { NormalKind::X3 } else { NormalKind::Surface };
         let normal = self.normal.unwrap_or(usual);
         let area = if normal == NormalKind::X3 { AreaKind::Projected } else { AreaKind::Surface };
         ContactScene {
-            face: self.face.clone().unwrap_or_else(|| face.to_owned()),
+            slave: BodyFace::new(0, self.face.as_deref().unwrap_or(face)),
+            master,
+            kind: ContactKind::Unilateral,
             normal,
             area: self.area.unwrap_or(area),
             friction,

@@ -11,17 +11,22 @@ mod bodies;
 mod case;
 mod check;
 mod contact_section;
+mod either;
+mod general;
 mod grid_file;
 mod lattice;
 mod limit;
 mod load_case;
 mod mesh_file;
 mod objective;
+mod parts;
 mod print;
 mod region;
 mod schema;
 mod setting;
 mod settings;
+mod shapes;
+mod short_form;
 mod surfaces;
 mod table;
 mod text;
@@ -32,15 +37,18 @@ pub use bodies::{
     BodySection, Component, LoadSection, MaterialSection, MeshBodySection, SupportSection, UnitName, UpperSection,
     VolumeMaterialSection,
 };
-pub use case::{Case, default_subdomains};
+pub use case::Case;
 pub use contact_section::{ContactSection, FrictionSection};
+pub use either::Either;
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::{LimitSection, QuantityName};
-pub use load_case::{CaseBodySection, CaseScene, CaseSection};
+pub use load_case::{CaseBodySection, CasePartSection, CaseScene, CaseSection};
 pub use objective::{AxisName, MeasureName, Objective, ObjectiveSection, WantedSection};
-pub use region::{BodyName, RegionSection};
+pub use parts::{BlockSection, FaceSection, PairSection, PartSection};
+pub use region::RegionSection;
 pub use schema::schema;
 pub use setting::{Setting, check_path};
+pub use short_form::default_subdomains;
 pub use settings::{AccuracyName, MeshSection, MethodName, OptimizerSection, OutputSection, SolverSection};
 pub use surfaces::{AdmissibleSection, CounterSection, FairnessSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;
@@ -58,10 +66,11 @@ pub const FILES: [&str; 4] = ["counter_surface.csv", "start.csv", "wanted_pressu
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// A contact shape optimization problem: an elastic body whose shape is optimized, and the rigid obstacle or second
-/// elastic body that it touches. Units: N, mm, MPa. The body is a block of bricks with an optimized upper surface, over
-/// the base spanned by x1, x2 and standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of
-/// control points (body, lattice).
+/// A contact shape optimization problem: elastic bodies, some of them with a shape that is optimized, and what they
+/// touch. Units: N, mm, MPa. Any number of bodies and of contacts are lists ([[body]], [[contact]]). Scenes of one
+/// optimized body have a short form: a block of bricks with an optimized top, over the base spanned by x1, x2 and
+/// standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of control points ([body], lattice),
+/// below a rigid obstacle or, of blocks, below a second elastic one (counter_surface, upper).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -71,26 +80,27 @@ pub struct SceneFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
     pub size: Option<[f64; 2]>,
-    /// Coulomb friction coefficient between the lower body and what is above it.
+    /// Coulomb friction coefficient of all contacts that have none of their own.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
     pub friction: f64,
-    /// What touches, along which normals.
+    /// What touches, along which normals: a table in the short form, else a list of pairs of faces.
     #[serde(default)]
-    pub contact: ContactSection,
+    pub contact: Either<ContactSection, PairSection>,
     /// Bricks of blocks and tearing into subdomains, the same for both blocks.
     #[serde(default)]
     pub mesh: MeshSection,
-    /// The body as a mesh, in place of blocks.
+    /// The body as a mesh, in place of blocks; or, as a list, all bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub body: Option<MeshBodySection>,
+    pub body: Option<Either<MeshBodySection, PartSection>>,
     /// The block whose upper surface is optimized.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<BodySection>,
     /// The elastic block above; left out for a rigid obstacle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<UpperSection>,
-    /// The rigid obstacle, or the lower surface of the upper body.
-    pub counter_surface: CounterSection,
+    /// The rigid obstacle, or the lower surface of the upper body. Required in the short form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counter_surface: Option<CounterSection>,
     /// The optimized surface of a block: its spline and its start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface: Option<SurfaceSection>,
@@ -120,6 +130,23 @@ pub struct SceneFile {
     pub output: OutputSection,
 }
 
+/// Whether a name is one of the copies of the files of a scene.
+pub fn is_copy(name: &str) -> bool {
+    FILES.iter().any(|copy| {
+        let Some((stem, end)) = copy.rsplit_once('.') else { return false };
+        let inner = name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(end)).and_then(|rest| rest.strip_suffix('.'));
+        let digits = |text: &str| text.trim_start_matches("-bottom").trim_start_matches("-top").to_owned();
+        inner.is_some_and(|rest| rest.is_empty() || digits(rest).strip_prefix('-').is_some_and(|n| n.parse::<usize>().is_ok()))
+    })
+}
+
+/// The name of the copy of a file of one of several bodies or contacts, such as `body-1.msh`.
+fn numbered(name: &str, index: usize, face: &str) -> String {
+    let (stem, end) = name.rsplit_once('.').unwrap_or((name, ""));
+    let face = if face.is_empty() { String::new() } else { format!("-{face}") };
+    format!("{stem}{face}-{index}.{end}")
+}
+
 impl SceneFile {
     /// Reads the text of a scene file; `name` stands in messages.
     ///
@@ -145,32 +172,60 @@ impl SceneFile {
     }
 
     /// The files that the scene names, each with the name of its copy beside a copy of the scene.
-    pub fn files_mut(&mut self) -> Vec<(&'static str, &mut String)> {
-        let [counter, start, wanted, body] = FILES;
+    pub fn files_mut(&mut self) -> Vec<(String, &mut String)> {
+        let [counter, start, wanted, mesh] = FILES.map(str::to_owned);
         let mut files = Vec::new();
-        if let CounterSection::Grid { file, .. } = &mut self.counter_surface {
-            files.push((counter, file));
+        if let Some(CounterSection::Grid { file, .. }) = &mut self.counter_surface {
+            files.push((counter.clone(), file));
         }
         if let Some(StartSection::Grid { file }) = self.surface.as_mut().map(|surface| &mut surface.start) {
-            files.push((start, file));
+            files.push((start.clone(), file));
         }
         if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
             files.push((wanted, file));
         }
-        files.extend(self.body.as_mut().map(|section| (body, &mut section.mesh)));
+        let Self { body, contact, .. } = self;
+        match body {
+            Some(Either::One(section)) => files.push((mesh, &mut section.mesh)),
+            Some(Either::Several(sections)) => {
+                for (index, section) in sections.iter_mut().enumerate() {
+                    files.extend(section.mesh.as_mut().map(|file| (numbered(&mesh, index, ""), file)));
+                    if let Some(StartSection::Grid { file }) = section.surface.as_mut().map(|own| &mut own.start) {
+                        files.push((numbered(&start, index, ""), file));
+                    }
+                    let faces = section.block.iter_mut().flat_map(|block| [("bottom", &mut block.bottom), ("top", &mut block.top)]);
+                    for (name, face) in faces {
+                        if let Some(CounterSection::Grid { file, .. }) = face {
+                            files.push((numbered(&start, index, name), file));
+                        }
+                    }
+                }
+            }
+            None => {}
+        }
+        for (index, pair) in contact.several_mut().iter_mut().enumerate() {
+            if let Some(CounterSection::Grid { file, .. }) = &mut pair.obstacle {
+                files.push((numbered(&counter, index, ""), file));
+            }
+        }
         files
     }
 
-    /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set,
+    /// The bodies of a list.
+    pub fn parts(&self) -> &[PartSection] {
+        self.body.as_ref().map_or(&[], Either::several)
+    }
+
+    /// The only body, where it is a mesh.
+    pub fn mesh_body(&self) -> Option<&MeshBodySection> {
+        self.body.as_ref().and_then(Either::one)
+    }
+
+    /// The value of the field at a path such as `mesh.bricks` or `body[0].unit`, as it stands in a file; for a field that is not set,
     /// what its documentation says of that.
     pub fn value(&self, path: &str) -> String {
         let table = toml::Table::try_from(self).unwrap_or_default();
-        let mut names = path.split('.');
-        let first = names.next().and_then(|name| table.get(name));
-        match names.try_fold(first, |value, name| value.map(|value| value.get(name))) {
-            Some(Some(value)) => value.to_string(),
-            _ => allowed::default(path),
-        }
+        setting::value_at(&table, path).map_or_else(|| allowed::default(path), |value| value.to_string())
     }
 
     /// The complete file with a comment on every field; reads back as the same scene.

@@ -1,10 +1,12 @@
 //! Load cases of a scene file: what of the scene is different in each.
 
-use crate::bodies::{BodySection, LoadSection, MaterialSection, MeshBodySection, SupportSection, UpperSection};
+use crate::bodies::{LoadSection, MaterialSection, SupportSection};
+use crate::either::Either;
 use crate::{SceneFile, bodies};
 use contact::error::SceneError;
 use contact::load_cases::Over;
-use contact::scene::{BodyScene, Scene};
+use contact::names::find;
+use contact::scene::{BodyScene, Geometry, Master, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -31,8 +33,8 @@ pub struct CaseSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub interference: Option<f64>,
-    /// By how much the counter surface is moved along x1, x2, x3, and the top of an upper body with it along x3.
-    /// Default not at all.
+    /// By how much obstacles are moved along x1, x2, x3; in the short form, the counter surface, and the top of an upper
+    /// body with it along x3. Default not at all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub offset: Option<[f64; 3]>,
@@ -42,9 +44,30 @@ pub struct CaseSection {
     /// What differs at the upper block.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<CaseBodySection>,
-    /// What differs at the body of a mesh.
+    /// What differs at the body of a mesh; or, as a list, at bodies by their names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub body: Option<CaseBodySection>,
+    pub body: Option<Either<CaseBodySection, CasePartSection>>,
+}
+
+/// One of several bodies in a load case: what is given replaces that of the scene.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CasePartSection {
+    /// The body.
+    pub name: String,
+    /// Elastic constants. Default those of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<MaterialSection>,
+    /// Held faces, all of them. Default those of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supports: Option<Vec<SupportSection>>,
+    /// The loads, all of them. Default those of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loads: Option<Vec<LoadSection>>,
+    /// By how much the body is moved along x1, x2, x3. Default not at all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub offset: Option<[f64; 3]>,
 }
 
 /// A body in a load case: what is given replaces that of the scene.
@@ -75,98 +98,108 @@ pub struct CaseScene {
     pub scene: Scene,
 }
 
+/// What a case says of a body.
+#[derive(Debug, Clone, Copy, Default)]
+struct Changed<'a> {
+    material: Option<&'a MaterialSection>,
+    supports: Option<&'a [SupportSection]>,
+    loads: Option<&'a [LoadSection]>,
+    offset: Option<[f64; 3]>,
+}
+
+impl<'a> Changed<'a> {
+    fn of(section: &'a CaseBodySection) -> Self {
+        let CaseBodySection { material, supports, loads } = section;
+        let (supports, loads) = (supports.as_deref(), loads.as_deref());
+        Self { material: material.as_ref(), supports, loads, offset: None }
+    }
+
+    fn of_part(section: &'a CasePartSection) -> Self {
+        let CasePartSection { material, supports, loads, offset, .. } = section;
+        let (supports, loads) = (supports.as_deref(), loads.as_deref());
+        Self { material: material.as_ref(), supports, loads, offset: *offset }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.material.is_none() && self.supports.is_none() && self.loads.is_none() && self.offset.is_none()
+    }
+
+    /// Changes a body of the scene; `place`: the table of the case.
+    fn apply(&self, place: &str, body: &mut BodyScene) -> Result<(), SceneError> {
+        if self.is_empty() {
+            return Err(SceneError::out_of_range(place, "an empty table", "material, supports or loads of the case"));
+        }
+        // What the case does not say of the body comes from the scene.
+        let name = std::mem::replace(&mut body.name, place.to_owned());
+        if let Some(material) = self.material {
+            body.material = material.material()?;
+        }
+        if let Some(supports) = self.supports {
+            body.supports = bodies::supports(place, supports)?;
+        }
+        if let Some(loads) = self.loads {
+            body.loads = bodies::loads(place, loads)?;
+        }
+        body.name = name;
+        if let Some(offset) = self.offset {
+            *body = body.clone().moved(offset)?;
+        }
+        Ok(())
+    }
+}
+
 impl CaseSection {
     /// The scene of the case, by its number in the file.
     fn scene(&self, index: usize, file: &SceneFile, base: &Scene) -> Result<Scene, SceneError> {
         let mut scene = base.clone();
         let place = |name: &str| format!("case[{index}].{name}");
-        let MeshOr { lower, name } = MeshOr::of(file);
-        let refused = |field: &str| Err(SceneError::out_of_range(place(field), "a table", "only a body of the scene"));
-        match (&self.lower, &self.body, name) {
-            (Some(_), _, "body") => return refused("lower"),
-            (_, Some(_), "lower") => return refused("body"),
-            (own, other, _) => {
-                if let (Some(own), Some(base)) = (own.as_ref().or(other.as_ref()), lower) {
-                    scene.lower = own.of_scene(&place(name), base, &scene.lower)?;
-                }
-            }
+        let tables = [
+            ("lower", self.lower.as_ref()),
+            ("upper", self.upper.as_ref()),
+            ("body", self.body.as_ref().and_then(Either::one)),
+        ];
+        for (name, section) in tables {
+            let Some(section) = section else { continue };
+            let known = file.parts().is_empty();
+            let Some(body) = scene.bodies.iter_mut().find(|body| known && body.name == name) else {
+                return Err(SceneError::out_of_range(place(name), "a table", "only a body of the scene"));
+            };
+            Changed::of(section).apply(&place(name), body)?;
         }
-        match (&self.upper, &file.upper, &mut scene.upper) {
-            (Some(own), Some(base), Some(upper)) => {
-                upper.body = own.of_scene(&place("upper"), Given::upper(base), &upper.body)?;
-            }
-            (Some(_), _, _) => return refused("upper"),
-            (None, _, _) => {}
+        for (number, section) in self.body.as_ref().map_or(&[][..], Either::several).iter().enumerate() {
+            let at = place(&format!("body[{number}]"));
+            let names = scene.bodies.iter().map(|body| body.name.as_str());
+            let body = find(&format!("{at}.name"), &section.name, names)?;
+            Changed::of_part(section).apply(&at, &mut scene.bodies[body])?;
         }
         if let Some(factor) = self.load_factor {
-            for body in scene.bodies_mut() {
+            for body in &mut scene.bodies {
                 body.loads = body.loads.iter().map(|load| load.scaled(factor)).collect();
             }
         }
-        if let Some(friction) = self.friction {
-            scene.contact.friction = friction;
-        }
-        if let Some(interference) = self.interference {
-            scene.contact.interference = interference;
+        for contact in scene.contacts.iter_mut().filter(|contact| !contact.is_tied()) {
+            contact.friction = self.friction.unwrap_or(contact.friction);
+            contact.interference = self.interference.unwrap_or(contact.interference);
         }
         if let Some(offset) = self.offset {
-            scene.counter_surface = scene.counter_surface.moved(offset);
-            if let Some(upper) = &mut scene.upper {
-                upper.top += offset[2];
-            }
+            self.move_counter_surfaces(offset, &mut scene);
         }
         let within = |source| SceneError::InFile { file: format!("case \"{}\"", self.name), source: Box::new(source) };
         scene.validate().map_err(within)?;
         Ok(scene)
     }
-}
 
-/// A body of a file as a case changes it.
-struct Given<'a> {
-    material: &'a MaterialSection,
-    supports: &'a [SupportSection],
-    loads: &'a [LoadSection],
-}
-
-impl<'a> Given<'a> {
-    fn lower(section: &'a BodySection) -> Self {
-        Self { material: &section.material, supports: &section.supports, loads: &section.loads }
-    }
-
-    fn upper(section: &'a UpperSection) -> Self {
-        Self { material: &section.material, supports: &section.supports, loads: &section.loads }
-    }
-
-    fn mesh(section: &'a MeshBodySection) -> Self {
-        Self { material: &section.material, supports: &section.supports, loads: &section.loads }
-    }
-}
-
-/// The shaped body of a file, with what its table is called.
-struct MeshOr<'a> {
-    lower: Option<Given<'a>>,
-    name: &'static str,
-}
-
-impl<'a> MeshOr<'a> {
-    fn of(file: &'a SceneFile) -> Self {
-        match &file.body {
-            Some(body) => Self { lower: Some(Given::mesh(body)), name: "body" },
-            None => Self { lower: file.lower.as_ref().map(Given::lower), name: "lower" },
+    /// Moves all obstacles; of the short form, an upper block with its counter surface.
+    fn move_counter_surfaces(&self, offset: [f64; 3], scene: &mut Scene) {
+        for contact in &mut scene.contacts {
+            if let Master::Obstacle(surface) = &mut contact.master {
+                *surface = surface.moved(offset);
+            }
         }
-    }
-}
-
-impl CaseBodySection {
-    /// The body of a case, from what the file says of it and what it is in the scene.
-    fn of_scene(&self, name: &str, given: Given<'_>, base: &BodyScene) -> Result<BodyScene, SceneError> {
-        if *self == Self::default() {
-            return Err(SceneError::out_of_range(name, "an empty table", "material, supports or loads of the case"));
+        let upper = scene.bodies.iter_mut().find(|body| body.name == "upper");
+        if let Some(Geometry::Block(block)) = upper.map(|body| &mut body.geometry) {
+            (block.bottom, block.top) = (block.bottom.moved(offset), block.top.moved([0.0, 0.0, offset[2]]));
         }
-        let material = self.material.as_ref().unwrap_or(given.material);
-        let supports = self.supports.as_deref().unwrap_or(given.supports);
-        let loads = self.loads.as_deref().unwrap_or(given.loads);
-        Ok(BodyScene { materials: base.materials.clone(), ..bodies::body(name, material, supports, loads)? })
     }
 }
 

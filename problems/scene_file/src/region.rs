@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RegionSection {
-    /// The body. Default all bodies.
+    /// Name of the body: lower or upper of blocks, body of a mesh, or that of an entry of [[body]]. Default all bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub body: Option<BodyName>,
+    pub body: Option<String>,
     /// Smallest and largest x1. Default no bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
@@ -32,15 +32,6 @@ pub struct RegionSection {
     pub face: Option<String>,
 }
 
-/// One of the bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are the meaning")]
-pub enum BodyName {
-    Lower,
-    Upper,
-}
-
 /// The region of a section that messages call `field`; the whole bodies without one.
 pub(crate) fn region(field: &str, section: Option<&RegionSection>) -> Result<Region, SceneError> {
     let section = section.cloned().unwrap_or_default();
@@ -53,9 +44,5 @@ pub(crate) fn region(field: &str, section: Option<&RegionSection>) -> Result<Reg
         }
         (lower[axis], upper[axis]) = (low, high);
     }
-    let body = section.body.map(|body| match body {
-        BodyName::Lower => 0,
-        BodyName::Upper => 1,
-    });
-    Ok(Region { lower, upper, body, volume: section.volume, face: section.face })
+    Ok(Region { lower, upper, body: section.body, volume: section.volume, face: section.face })
 }

@@ -66,6 +66,12 @@ impl Setting {
         Self { path: path.to_owned(), value: None }
     }
 
+    /// The same value for another field, such as that of a body of a list.
+    #[must_use]
+    pub fn at(&self, path: &str) -> Self {
+        Self { path: path.to_owned(), value: self.value.clone() }
+    }
+
     /// The path of the field.
     pub fn path(&self) -> &str {
         &self.path
@@ -114,6 +120,18 @@ fn value(text: &str) -> Value {
         (Some(value), true) => value,
         _ => number().unwrap_or_else(|| Value::String(text.to_owned())),
     }
+}
+
+/// The value at a path below a table; none where nothing is set.
+pub(crate) fn value_at(table: &Table, path: &str) -> Option<Value> {
+    let mut here = Value::Table(table.clone());
+    for step in steps(path) {
+        here = match step {
+            Step::Field(name) => here.get(name)?.clone(),
+            Step::Entry(index) => here.get(index)?.clone(),
+        };
+    }
+    Some(here)
 }
 
 fn steps(path: &str) -> Vec<Step<'_>> {

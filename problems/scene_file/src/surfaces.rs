@@ -1,7 +1,7 @@
 //! Surfaces of a scene file: what lies above, what is optimized, and within which bounds.
 
 use contact::scene::Side;
-use contact::shape::ShapeBounds;
+use contact::shape::{ShapeBounds, ShapedFace};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ pub enum CounterSection {
         #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
         period: f64,
     },
-    /// A sphere as a height surface, whose lowest point lies over the corner (0, 0); it must cover the base.
+    /// A sphere as a height surface, which must cover the base.
     Sphere {
         /// Height of the lowest point.
         #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
@@ -38,6 +38,10 @@ pub enum CounterSection {
         /// Radius.
         #[schemars(range(max = 1e12), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
         radius: f64,
+        /// x1, x2 of the lowest point. Default [0, 0].
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+        centre: Option<[f64; 2]>,
     },
     /// Heights on a uniform grid over the base, bilinear in between.
     Grid {
@@ -95,6 +99,9 @@ pub enum CounterSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceSection {
+    /// The face of the block that it shapes; of a single block and of the lower one of two, the top.
+    #[serde(default)]
+    pub face: ShapedFace,
     /// Spline that carries the surface.
     #[serde(default)]
     pub spline: SplineName,

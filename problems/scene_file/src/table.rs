@@ -23,10 +23,16 @@ fn rows(text: &mut String, node: &Node<'_>, path: &str, defaults: &Value) {
         let default = field.outer.get("default").or(defaults.get(name)).unwrap_or(&Value::Null);
         if field.is_table() {
             let (entries, forms) = (field.tables(), field.forms());
-            let (open, close) = if entries.is_some() { ("[[", "]]") } else { ("[", "]") };
             let required = if node.requires(name) { "required" } else { "–" };
-            row(text, &format!("{open}{place}{close}"), required, "", &meaning);
-            rows(text, &entries.unwrap_or(field), &place, default);
+            if field.fields().is_some() || !forms.is_empty() {
+                row(text, &format!("[{place}]"), required, "", &meaning);
+                rows(text, &field, &place, default);
+            }
+            if let Some(entries) = entries {
+                let own = entries.text("description").filter(|_| field.fields().is_some());
+                row(text, &format!("[[{place}]]"), required, "", &own.unwrap_or(meaning));
+                rows(text, &entries, &place, default);
+            }
             for (form, node) in forms {
                 let meaning = node.text("description").unwrap_or_default();
                 row(text, &format!("{place}.form"), "", &format!("\"{form}\""), &meaning);

@@ -1,11 +1,12 @@
-//! Control files: a JSON array of rows of heights, or one of displacements of the control points of a lattice.
+//! Control files: a JSON array of rows of heights, or one of displacements of the control points of a lattice; of
+//! several bodies, one of all their controls, body by body.
 
 use crate::commands::arguments::HeightError;
 use crate::commands::failure::Failure;
 use crate::commands::folder::file_error;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
-use contact::shape::ShapeScene;
+use contact::scene::Scene;
 use nonsmooth::Vector;
 use nonsmooth::verify::seeded_direction;
 use scene_file::{Case, read_text};
@@ -29,11 +30,10 @@ pub fn load(
 ) -> Result<Vector, SceneError> {
     let place = file.map_or("surface.start", |_| option).to_owned();
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
-    let shape = &problem.scene.shape;
     let controls = match (file, &case.start) {
-        (Some(file), _) => read(file, Layout::of(shape)).map_err(within)?,
+        (Some(file), _) => read(file, Layout::of(&problem.scene)).map_err(within)?,
         (None, Some(controls)) => Vector::from_column_slice(controls),
-        (None, None) => Vector::from_vec(shape.start()),
+        (None, None) => Vector::from_vec(problem.scene.start()),
     };
     let set = &problem.admissible;
     let checked = if option == START_OPTION { set.check(&controls) } else { set.check_shape(&controls) };
@@ -50,21 +50,21 @@ pub fn read(file: &Path, layout: Layout) -> Result<Vector, SceneError> {
     parse(&text, &file.display().to_string(), layout)
 }
 
-/// How the controls of a shape stand in a file.
+/// How the controls of a scene stand in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// Heights of so many control points along x₁ and x₂, in rows.
     Grid([usize; 2]),
-    /// So many displacements, one after the other.
+    /// So many displacements or heights, one after the other.
     Plain(usize),
 }
 
 impl Layout {
-    /// The layout of a shape.
-    pub fn of(shape: &ShapeScene) -> Self {
-        match shape {
-            ShapeScene::Heights(heights) => Self::Grid(heights.control_points),
-            ShapeScene::Lattice(_) => Self::Plain(shape.control_count()),
+    /// The layout of the controls of a scene: rows of the only height surface, else one list, body by body.
+    pub fn of(scene: &Scene) -> Self {
+        match scene.heights() {
+            Some(heights) => Self::Grid(heights.control_points),
+            None => Self::Plain(scene.control_count()),
         }
     }
 

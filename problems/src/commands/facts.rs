@@ -5,6 +5,7 @@ use crate::commands::numbers::{number, percent, rounded};
 use figures::page::{Block, Section};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
+use std::borrow::Cow;
 
 /// Digits of a residual for people.
 const RESIDUAL_DIGITS: usize = 2;
@@ -74,7 +75,7 @@ impl From<String> for Value {
 #[derive(Debug, Clone)]
 pub struct Fact {
     /// Its name in JSON, which does not change; `a.b` is the key `b` of the object `a`. Empty: not in JSON.
-    key: &'static str,
+    key: Cow<'static, str>,
     /// Its name for people. Empty: in JSON only.
     name: String,
     values: Vec<Value>,
@@ -89,13 +90,13 @@ pub struct Fact {
 }
 
 impl Fact {
-    pub fn new(key: &'static str, name: &str, value: impl Into<Value>, unit: &str) -> Self {
+    pub fn new(key: impl Into<Cow<'static, str>>, name: &str, value: impl Into<Value>, unit: &str) -> Self {
         Self::row(key, name, vec![value.into()], unit)
     }
 
     /// A fact with a value per shape.
-    pub fn row(key: &'static str, name: &str, values: Vec<Value>, unit: &str) -> Self {
-        Self { key, name: name.into(), values, unit: unit.into(), meaning: "", detail: false, object: None }
+    pub fn row(key: impl Into<Cow<'static, str>>, name: &str, values: Vec<Value>, unit: &str) -> Self {
+        Self { key: key.into(), name: name.into(), values, unit: unit.into(), meaning: "", detail: false, object: None }
     }
 
     /// Words for people, and an object for JSON.
@@ -131,7 +132,7 @@ impl Fact {
 
     /// The fact for people only.
     pub fn without_key(self) -> Self {
-        Self { key: "", ..self }
+        Self { key: Cow::Borrowed(""), ..self }
     }
 
     /// The values as people read them, without the unit.
@@ -224,7 +225,7 @@ impl Group {
     pub fn table(&self) -> impl Serialize + use<> {
         #[derive(Serialize)]
         struct Row {
-            key: &'static str,
+            key: String,
             quantity: String,
             unit: String,
             values: Vec<serde_json::Value>,
@@ -236,7 +237,7 @@ impl Group {
             rows: Vec<Row>,
         }
         let row = |fact: &Fact| Row {
-            key: fact.key,
+            key: fact.key.to_string(),
             quantity: fact.name.clone(),
             unit: fact.unit.clone(),
             values: fact.values.iter().map(Value::json).collect(),
@@ -293,12 +294,14 @@ pub fn line(name: &str, words: &str) -> String {
 /// One JSON object. Facts with several values have arrays; objects of such facts become an array, one per shape.
 impl Serialize for Facts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        fn parent(fact: &Fact) -> Option<&str> {
+            fact.key.split_once('.').map(|(parent, _)| parent)
+        }
         let keyed: Vec<&Fact> = self.all().filter(|fact| !fact.key.is_empty()).collect();
-        let parent = |fact: &Fact| fact.key.split_once('.').map(|(parent, _)| parent);
         let mut map = serializer.serialize_map(None)?;
         for facts in keyed.chunk_by(|a, b| parent(a).is_some() && parent(a) == parent(b)) {
             let Some(name) = parent(facts[0]) else {
-                map.serialize_entry(facts[0].key, &facts[0].value_json(None))?;
+                map.serialize_entry(&facts[0].key, &facts[0].value_json(None))?;
                 continue;
             };
             let object = |shape: Option<usize>| -> serde_json::Value {

@@ -51,7 +51,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let certificate = read(&folder.join("certificate.json"))?;
     let own = own_scene(loaded, folder)?;
     let case = own.as_ref().map_or(&loaded.case, |own| &own.case);
-    let controls = controls::read(&folder.join("controls.json"), Layout::of(&case.scene.shape))?;
+    let controls = controls::read(&folder.join("controls.json"), Layout::of(&case.scene))?;
     let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };

@@ -4,6 +4,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use crate::commands::list_fields::{first_in_lists, in_lists, stands_for, unfit_subdomains};
 use contact::error::SceneError;
 use scene_file::{MeasureName, MethodName, SceneFile, Setting, choices};
 
@@ -11,7 +12,7 @@ use scene_file::{MeasureName, MethodName, SceneFile, Setting, choices};
 const LARGEST_TRACTION: f64 = 1e15;
 
 /// Fields with their values, or what no scene may have.
-type Settings = Result<Vec<Setting>, SceneError>;
+pub type Settings = Result<Vec<Setting>, SceneError>;
 
 /// An option and what it changes.
 pub struct SceneOption {
@@ -149,13 +150,18 @@ const fn option(
     help: &'static str,
 ) -> SceneOption {
     let read = |fields: &'static [&'static str], text: &str| fields.iter().map(|f| Setting::read(f, text)).collect();
-    SceneOption { name, fields, heading, value_name, help, read, adapt: |_, _, settings| Ok(settings) }
+    SceneOption { name, fields, heading, value_name, help, read, adapt: |file, _, settings| in_lists(file, settings) }
 }
 
 /// Subdomains of the file that do not fit the new mesh give way to those that do.
-fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
-    let mut settings = of_blocks(file, "", std::mem::take(&mut settings))?;
-    let mesh = file.with(&settings)?.mesh;
+fn fitting(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
+    let mut settings = of_blocks(file, "", settings)?;
+    let changed = file.with(&settings)?;
+    if !file.parts().is_empty() {
+        settings.extend(unfit_subdomains(&changed));
+        return Ok(settings);
+    }
+    let mesh = changed.mesh;
     let fits = |counts: [usize; 3]| mesh.bricks.iter().zip(counts).all(|(n, count)| count > 0 && n % count == 0);
     settings.extend((!mesh.subdomains.is_some_and(fits)).then(|| Setting::removal("mesh.subdomains")));
     Ok(settings)
@@ -164,17 +170,20 @@ fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
 /// Refuses fields of blocks for a mesh.
 fn of_blocks(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
     match settings.first() {
-        Some(setting) if file.body.is_some() => Err(SceneError::out_of_range(
+        Some(setting) if file.mesh_body().is_some() => Err(SceneError::out_of_range(
             setting.path(),
             "given for a mesh",
             "only for blocks; body.pieces divides a mesh",
         )),
-        _ => Ok(settings),
+        _ => in_lists(file, settings),
     }
 }
 
 /// The fields of a body that is not there are left out.
 fn of_bodies(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
+    if !file.parts().is_empty() {
+        return in_lists(file, settings);
+    }
     let bodies = [("lower.", file.lower.is_some()), ("upper.", file.upper.is_some()), ("body.", file.body.is_some())];
     settings.retain(|setting| bodies.iter().all(|(body, exists)| *exists || !setting.path().starts_with(body)));
     Ok(settings)
@@ -192,10 +201,11 @@ fn factor(_: &'static [&'static str], text: &str) -> Settings {
 /// All loads times the factor in the text.
 fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings {
     let factor: f64 = text.parse().unwrap_or(f64::NAN);
-    let lower = file.lower.iter().map(|body| ("lower", &body.loads));
-    let upper = file.upper.iter().map(|body| ("upper", &body.loads));
-    let body = file.body.iter().map(|body| ("body", &body.loads));
-    for (body, loads) in lower.chain(upper).chain(body) {
+    let lower = file.lower.iter().map(|body| ("lower".to_owned(), &body.loads));
+    let upper = file.upper.iter().map(|body| ("upper".to_owned(), &body.loads));
+    let body = file.mesh_body().into_iter().map(|body| ("body".to_owned(), &body.loads));
+    let parts = file.parts().iter().enumerate().map(|(index, part)| (format!("body[{index}]"), &part.loads));
+    for (body, loads) in lower.chain(upper).chain(body).chain(parts) {
         for (index, load) in loads.iter().enumerate() {
             let mut scale = |name: &str, unit: &str, vector: Option<&[f64]>| {
                 let Some(vector) = vector else { return Ok(()) };
@@ -361,8 +371,8 @@ impl SceneChanges {
     pub fn blame(&self, error: SceneError) -> SceneError {
         let source = if let SceneError::InFile { source, .. } = &error { source } else { &error };
         let SceneError::OutOfRange { field, value, allowed } = source else { return error };
-        let stands_for =
-            |name: &str| find(name).is_some_and(|option| option.fields.iter().any(|f| field.starts_with(f)));
+        let is_of = |own: &&str| field.starts_with(own) || stands_for(own, field);
+        let stands_for = |name: &str| find(name).is_some_and(|option| option.fields.iter().any(is_of));
         let set = self.set.iter().find(|setting| field.starts_with(setting.path())).map(|_| format!("--set {field}"));
         let option = || self.options.0.iter().find(|(name, _)| stands_for(name)).map(|(name, _)| format!("--{name}"));
         match set.or_else(option) {
@@ -378,7 +388,8 @@ pub fn help_with_defaults(command: Command, scene: Option<&SceneFile>) -> Comman
         let Some(field) = find(argument.get_id().as_str()).and_then(|option| option.fields.first()) else {
             return argument;
         };
-        let default = scene.map_or_else(|| format!("{field} of the scene"), |scene| scene.value(field));
+        let own = |scene: &SceneFile| scene.value(&first_in_lists(scene, field));
+        let default = scene.map_or_else(|| format!("{field} of the scene"), own);
         let meaning = argument.get_help().map(ToString::to_string).unwrap_or_default();
         argument.help(format!("{meaning} [default: {default}]"))
     };

@@ -119,7 +119,8 @@ impl SolvedShape {
     pub fn fields(&self, objective: &ContactObjective, case: usize, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.cases().case(case).fields(&self.states[case])?;
         if sensitivities {
-            fields.contact.set_sensitivity(&objective.position_sensitivity(&self.controls, &self.states)?);
+            let sensitivities = objective.position_sensitivity(&self.controls, &self.states)?;
+            fields.contact.set_sensitivity(objective.solver().problem(), &sensitivities);
         }
         Ok(fields)
     }

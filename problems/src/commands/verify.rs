@@ -126,7 +126,11 @@ fn smooth_step(
     let problem = objective.solver().problem();
     let size = match problem.scene.heights() {
         Some(_) => control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64,
-        None => smallest_extent(&problem.map.positions(control.as_slice())),
+        None => {
+            let positions = problem.map.positions(control.as_slice());
+            let shaped = problem.map.shaped_bodies().map(|body| smallest_extent(&positions[body]));
+            shaped.fold(f64::INFINITY, f64::min)
+        }
     };
     let mut step = MAX_RELATIVE_STEP * size;
     let stays = |step: f64| -> Result<bool, Failure> {

@@ -33,12 +33,12 @@ impl Body {
     /// # Errors
     /// [`SceneError`] for names that the mesh does not have, and for loads and supports that mean nothing.
     pub fn new(
-        name: &str,
         scene: &BodyScene,
         mesh: Arc<Mesh>,
         contact: &[CellFace],
         piece_count: usize,
     ) -> Result<Self, SceneError> {
+        let name = scene.name.as_str();
         let held = held_directions(name, &mesh, &scene.supports)?;
         let loads = scene.loads.iter().enumerate();
         let loads = loads.map(|(index, load)| Loaded::new(&format!("{name}.loads[{index}]"), load, &mesh));

@@ -6,9 +6,9 @@ use crate::body::loads::{add_moved_loads, loads_depend};
 use crate::body::{Body, Piece};
 use crate::shape::Velocities;
 
-/// The forces over the dofs of one piece, N, one vector per field of velocities; `u`: displacement over its dofs.
+/// The forces over the dofs of one piece of a body, given with its number, N, one vector per field of velocities; `u`: displacement over its dofs.
 pub fn shape_forces(
-    body: &Body,
+    (number, body): (usize, &Body),
     piece: &Piece,
     positions: &[[f64; 3]],
     u: &[f64],
@@ -19,7 +19,7 @@ pub fn shape_forces(
     let mut cell_u = Vec::new();
     for (index, &cell) in piece.cells.iter().enumerate() {
         let (cell, nodes) = (cell as usize, body.mesh.cell(cell as usize).nodes);
-        let fields = velocities.of_nodes(nodes);
+        let fields = velocities.of_nodes(number, nodes);
         if fields.is_empty() {
             continue;
         }
@@ -32,9 +32,9 @@ pub fn shape_forces(
             piece.add_cell_forces(index, &moved, &mut forces[*column]);
         }
     }
-    if loads_depend(body, |node| velocities.moves(node)) {
+    if loads_depend(body, |node| velocities.moves(number, node)) {
         for (column, forces) in forces.iter_mut().enumerate() {
-            add_moved_loads(body, piece, positions, |node| velocities.at(node, column), forces);
+            add_moved_loads(body, piece, positions, |node| velocities.at(number, node, column), forces);
         }
     }
     forces

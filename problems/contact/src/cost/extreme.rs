@@ -117,9 +117,9 @@ impl Extreme {
                     (0..3).map(move |axis| (index(node, axis), entries[axis]))
                 };
                 let displacements = nodes.iter().zip(&stressed.by_displacement).flat_map(of_node).collect();
-                // Only the nodes of the lower body move.
-                let moves = |node: u32| place.body == 0 && self.map.moves(node);
-                let positions = nodes.iter().copied().zip(stressed.by_position).filter(|(node, _)| moves(*node));
+                let moving = nodes.iter().zip(stressed.by_position);
+                let moving = moving.filter(|(node, _)| self.map.moves(place.body, **node));
+                let positions = moving.map(|(node, entry)| (before + *node as usize, entry));
                 FieldPiece { value, displacements, positions: positions.collect() }
             }
             Points::Displacements { component, .. } => {

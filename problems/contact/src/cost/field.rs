@@ -5,7 +5,7 @@
 //! J = ((1/V₀) Σ_e V_e σ_vM,e^p)^{1/p},     J = f·u,     J = max of points         l = ∂J/∂u: a load in the adjoint problem
 //! ```
 //! What J depends on the shape at fixed displacements is ∇₁J of the framework: volumes and stresses of cells whose
-//! nodes move, and loads that depend on the shape. Only the lower body changes its shape.
+//! nodes move, and loads that depend on the shape.
 
 use crate::body::Body;
 use crate::body::elasticity::CellNodes;
@@ -95,7 +95,7 @@ impl FieldCost {
         self.measure.is_smooth()
     }
 
-    /// J of solved bodies, lower first.
+    /// J of solved bodies.
     pub fn value_of(&self, bodies: &[SolvedBody]) -> f64 {
         match &self.function {
             Function::StressNorm { cells, exponent } => {
@@ -123,16 +123,15 @@ impl FieldCost {
         }
     }
 
-    /// The derivatives of J at solved bodies, lower first: of a maximum or minimum over points those of the first
+    /// The derivatives of J at solved bodies: of a maximum or minimum over points those of the first
     /// extreme one, which is one subgradient of a maximum of such functions.
     pub fn gradient_of(&self, bodies: &[SolvedBody]) -> FieldGradient {
-        let displacement_count = 3 * bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>();
-        let node_count = bodies.first().map_or(0, |body| body.mesh.node_count());
+        let node_count = bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>();
         let zero = FieldPiece { value: 0.0, displacements: Vec::new(), positions: Vec::new() };
         if let Function::Extreme(extreme) = &self.function {
-            return extreme.first(bodies).unwrap_or(zero).gradient(displacement_count, node_count);
+            return extreme.first(bodies).unwrap_or(zero).gradient(node_count);
         }
-        let mut gradient = zero.gradient(displacement_count, node_count);
+        let mut gradient = zero.gradient(node_count);
         match &self.function {
             Function::StressNorm { cells, exponent } => {
                 self.add_stress_gradient(bodies, cells, *exponent, &mut gradient)
@@ -143,7 +142,7 @@ impl FieldCost {
         gradient
     }
 
-    /// The smooth functions of which J is made near solved bodies, lower first. One piece, J itself, for smooth
+    /// The smooth functions of which J is made near solved bodies. One piece, J itself, for smooth
     /// measures. For a maximum the points whose values are within a tenth of it, at most 200, the largest first; for a
     /// minimum those within a tenth of the largest absolute value above it, the smallest first. Values and derivatives
     /// have the sign of the displacements, for a minimum too: J is the smallest of its pieces then.
@@ -183,9 +182,9 @@ impl FieldCost {
                     for axis in 0..3 {
                         gradient.displacements[first + 3 * node as usize + axis] +=
                             by_stress * cell.by_displacement[local][axis];
-                        // Only the nodes of the lower body move.
-                        if number == 0 && self.map.moves(node) {
-                            gradient.positions[node as usize][axis] += by_stress * cell.by_position[local][axis]
+                        if self.map.moves(number, node) {
+                            gradient.positions[first / 3 + node as usize][axis] += by_stress
+                                * cell.by_position[local][axis]
                                 + by_volume * cell.volume_by_position[local][axis];
                         }
                     }
@@ -198,22 +197,20 @@ impl FieldCost {
     /// l = f, and uᵀ∂f.
     fn add_compliance_gradient(&self, bodies: &[SolvedBody], gradient: &mut FieldGradient) {
         let mut first = 0;
-        for (solved, body) in bodies.iter().zip(&*self.bodies) {
+        for (number, (solved, body)) in bodies.iter().zip(&*self.bodies).enumerate() {
             for (node, force) in nodal_forces(body, &solved.positions) {
                 for (axis, force) in force.into_iter().enumerate() {
                     gradient.displacements[first + 3 * node as usize + axis] += force;
                 }
             }
-            first += 3 * body.mesh.node_count();
-        }
-        if let (Some(lower), Some(body)) = (bodies.first(), self.bodies.first()) {
-            let u = |node: u32| lower.displacement[node as usize];
-            let moves = |node: u32| self.map.moves(node);
-            for (node, value) in load_sensitivities(body, &|_| true, &lower.positions, &u, &moves) {
+            let u = |node: u32| solved.displacement[node as usize];
+            let moves = |node: u32| self.map.moves(number, node);
+            for (node, value) in load_sensitivities(body, &|_| true, &solved.positions, &u, &moves) {
                 if moves(node) {
-                    gradient.positions[node as usize] = value;
+                    gradient.positions[first / 3 + node as usize] = value;
                 }
             }
+            first += 3 * body.mesh.node_count();
         }
     }
 }

@@ -12,9 +12,9 @@ use crate::shape::Velocities;
 /// The derivatives of a function of the displacements at a state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldGradient {
-    /// ∂J/∂u, three entries per node of every body, lower first, unit of J per mm.
+    /// ∂J/∂u, three entries per node of every body, unit of J per mm.
     pub displacements: Vec<f64>,
-    /// ∂J/∂x per node of the lower body at fixed displacements, unit of J per mm; 0 for nodes that no control moves.
+    /// ∂J/∂x per node of every body at fixed displacements, unit of J per mm; 0 for nodes that no control moves.
     pub positions: Vec<[f64; 3]>,
 }
 
@@ -23,27 +23,28 @@ pub struct FieldGradient {
 pub struct FieldPiece {
     /// The value.
     pub value: f64,
-    /// ∂J/∂u, unit of J per mm, by the index 3·node + axis over the nodes of all bodies, lower first.
+    /// ∂J/∂u, unit of J per mm, by the index 3·node + axis over the nodes of all bodies.
     pub displacements: Vec<(usize, f64)>,
-    /// ∂J/∂x at fixed displacements, unit of J per mm, for nodes of the lower body that some control moves.
-    pub positions: Vec<(u32, [f64; 3])>,
+    /// ∂J/∂x at fixed displacements, unit of J per mm, by the numbers of the nodes that some control moves among those
+    /// of all bodies.
+    pub positions: Vec<(usize, [f64; 3])>,
 }
 
 impl FieldPiece {
     /// The piece of a function with a given value and gradient.
     pub(super) fn of(value: f64, gradient: &FieldGradient) -> Self {
         let displacements = gradient.displacements.iter().copied().enumerate().filter(|(_, entry)| *entry != 0.0);
-        let positions = (0..).zip(gradient.positions.iter().copied()).filter(|(_, entry)| *entry != [0.0; 3]);
+        let positions = gradient.positions.iter().copied().enumerate().filter(|(_, entry)| *entry != [0.0; 3]);
         Self { value, displacements: displacements.collect(), positions: positions.collect() }
     }
 
-    /// The derivatives over all displacements and over all nodes of the lower body.
-    pub fn gradient(&self, displacement_count: usize, node_count: usize) -> FieldGradient {
+    /// The derivatives over all displacements and over all nodes.
+    pub fn gradient(&self, node_count: usize) -> FieldGradient {
         let mut gradient =
-            FieldGradient { displacements: vec![0.0; displacement_count], positions: vec![[0.0; 3]; node_count] };
+            FieldGradient { displacements: vec![0.0; 3 * node_count], positions: vec![[0.0; 3]; node_count] };
         self.displacements.iter().for_each(|&(index, entry)| gradient.displacements[index] += entry);
         for &(node, entry) in &self.positions {
-            (0..3).for_each(|axis| gradient.positions[node as usize][axis] += entry[axis]);
+            (0..3).for_each(|axis| gradient.positions[node][axis] += entry[axis]);
         }
         gradient
     }
@@ -55,7 +56,7 @@ impl FieldPiece {
         let of_state = |u: &Vec<f64>| self.displacements.iter().map(|(index, entry)| entry * u[*index]).sum();
         let mut row: Vec<f64> = displacements.iter().map(of_state).collect();
         for (node, entry) in &self.positions {
-            for (column, velocity) in velocities.of_nodes(&[*node]) {
+            for (column, velocity) in velocities.of_numbers(std::iter::once(*node)) {
                 row[column] += (0..3).map(|axis| entry[axis] * velocity[axis]).sum::<f64>();
             }
         }

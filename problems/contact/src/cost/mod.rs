@@ -25,7 +25,7 @@ pub use outputs::PressureOutputs;
 pub use pressure::PressureCost;
 pub use pressure_measure::{ContactAreas, NodeWeight, PressureMeasure, PressureRoot};
 pub use region::{Region, RegionCells};
-pub(crate) use volume::{volume, volume_gradient};
+pub(crate) use volume::{volume, volume_gradient, volume_slope};
 
 /// The function of a contact state that is minimised.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +34,6 @@ pub enum Measure {
     Pressure(PressureMeasure),
     /// A function of the displacements.
     Field(FieldMeasure),
-    /// The volume of the lower body, mm³.
+    /// The volume of the bodies that controls shape, mm³.
     Volume,
 }

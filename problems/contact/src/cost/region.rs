@@ -15,8 +15,8 @@ pub struct Region {
     pub lower: [f64; 3],
     /// Largest x₁, x₂, x₃, mm; the faces of the box belong to it.
     pub upper: [f64; 3],
-    /// 0 for the lower body alone, 1 for the upper one alone, none for all bodies.
-    pub body: Option<usize>,
+    /// Name of the only body; none for all bodies.
+    pub body: Option<String>,
     /// The name of a volume of the mesh; none for all volumes.
     pub volume: Option<String>,
     /// The name of a face of the mesh, whose nodes alone belong to the region; none for whole cells. Stresses belong to
@@ -27,7 +27,7 @@ pub struct Region {
 /// The cells of a region.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionCells {
-    /// Cells of every body, lower first.
+    /// Cells of every body.
     pub cells: Vec<Vec<usize>>,
     /// Volume of these cells at the start, mm³.
     pub volume: f64,
@@ -79,7 +79,7 @@ impl Region {
         let mut found = RegionCells { cells: vec![Vec::new(); positions.len()], volume: 0.0 };
         let mut centres = Vec::new();
         for (number, (body, positions)) in problem.bodies.iter().zip(&positions).enumerate() {
-            for cell in (0..body.mesh.cell_count()).filter(|&cell| self.may_hold(number, body, cell)) {
+            for cell in (0..body.mesh.cell_count()).filter(|&cell| self.may_hold(body, cell)) {
                 let centre = body.mesh.centre(cell, positions);
                 centres.push(centre);
                 if self.surrounds(centre, slack) {
@@ -94,7 +94,7 @@ impl Region {
         }
     }
 
-    /// The nodes of every body, lower first, each ascending: those of the [cells](Self::cells), or with a face those of
+    /// The nodes of every body, each ascending: those of the [cells](Self::cells), or with a face those of
     /// its nodes that lie in the box at the start and belong to a cell of the volume.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl Region {
 
     fn face_nodes(&self, place: &str, face: &str, problem: &ContactProblem) -> Result<Vec<Vec<u32>>, SceneError> {
         self.check(place, problem)?;
-        let bodies = || problem.bodies.iter().enumerate().filter(|(number, _)| self.is_of(*number));
+        let bodies = || problem.bodies.iter().enumerate().filter(|(_, body)| self.is_of(body));
         let names = bodies().flat_map(|(_, body)| body.mesh.faces().keys());
         find(&format!("{place}.region.face"), face, names.map(String::as_str))?;
         let positions = problem.start_positions();
@@ -130,7 +130,7 @@ impl Region {
         for (number, body) in bodies() {
             let faces = body.mesh.faces().get(face).into_iter().flatten();
             for node in faces
-                .filter(|face| self.may_hold(number, body, face.cell as usize))
+                .filter(|face| self.may_hold(body, face.cell as usize))
                 .flat_map(|face| body.mesh.face_nodes(*face))
             {
                 let x = positions[number][node as usize];
@@ -148,10 +148,8 @@ impl Region {
 
     /// Checks body and volume.
     fn check(&self, place: &str, problem: &ContactProblem) -> Result<(), SceneError> {
-        if let Some(body) = self.body.filter(|body| *body >= problem.bodies.len()) {
-            let value = if body == 1 { "upper" } else { "unknown" };
-            let allowed = "a body of the scene, which has no upper one";
-            return Err(SceneError::out_of_range(format!("{place}.region.body"), value, allowed));
+        if let Some(body) = &self.body {
+            find(&format!("{place}.region.body"), body, problem.bodies.iter().map(|body| body.name.as_str()))?;
         }
         if let Some(volume) = &self.volume {
             let names = problem.bodies.iter().flat_map(|body| body.mesh.volumes());
@@ -161,14 +159,14 @@ impl Region {
     }
 
     /// Whether a body belongs to the region.
-    fn is_of(&self, number: usize) -> bool {
-        self.body.is_none_or(|own| own == number)
+    fn is_of(&self, body: &Body) -> bool {
+        self.body.as_ref().is_none_or(|own| *own == body.name)
     }
 
     /// Whether a cell belongs to the body and the volume of the region.
-    fn may_hold(&self, number: usize, body: &Body, cell: usize) -> bool {
+    fn may_hold(&self, body: &Body, cell: usize) -> bool {
         let name = &body.mesh.volumes()[body.mesh.volume_of(cell)];
-        self.is_of(number) && self.volume.as_ref().is_none_or(|volume| volume == name)
+        self.is_of(body) && self.volume.as_ref().is_none_or(|volume| volume == name)
     }
 
     /// Whether a point lies in the box.

@@ -3,7 +3,7 @@
 //! ```text
 //! S u = f − Bᵀλ   ⇔   u = C (f − Bᵀλ) + N a,   Nᵀ (f − Bᵀλ) = 0,   C = S⁺ = (S + s N Nᵀ)⁻¹ − N Nᵀ/s,   Nᵀ N = I
 //! ```
-//! B: the share of the body in the jumps of the packed rows, −1 times its directions for the upper body.
+//! B: the share of the body in the jumps of the packed rows: the weights of its nodes times the directions.
 
 use crate::body::{Body, Place};
 use crate::direct::condensation::CondensedBody;
@@ -96,19 +96,18 @@ impl BodyRows {
     pub fn new(number: usize, condensed: &CondensedBody, boundary: &ContactBoundary, rows: &ContactRows) -> Self {
         let pattern = &condensed.pattern;
         let mut all = Vec::with_capacity(boundary.row_count);
-        let mut index = 0;
         for (point, node) in boundary.points.iter().zip(&rows.nodes) {
-            let side = point.sides.iter().find(|side| side.body == number);
+            let sides = point.sides.iter().zip(&node.weights);
+            let own = sides.filter(|(side, weight)| side.body == number && **weight != 0.0);
+            let own: Vec<(usize, f64)> =
+                own.filter_map(|(side, weight)| Some((pattern.contact_place(side.node)?, *weight))).collect();
             for direction in &node.directions {
-                let Some(side) = side else {
-                    all.push(Vec::new());
-                    continue;
-                };
-                let turned = pattern.axes.turn_at(pattern.contact[index], *direction);
-                let entries = (0..3).map(|axis| (3 * index + axis, side.weight * turned[axis]));
+                let entries = own.iter().flat_map(|&(place, weight)| {
+                    let turned = pattern.axes.turn_at(pattern.contact[place], *direction);
+                    (0..3).map(move |axis| (3 * place + axis, weight * turned[axis]))
+                });
                 all.push(entries.filter(|(dof, value)| *value != 0.0 && !pattern.holds(*dof)).collect());
             }
-            index += usize::from(side.is_some());
         }
         Self(all)
     }

@@ -7,7 +7,7 @@
 //! that no contact node feels are left out: no force depends on them.
 
 use crate::direct::compliant_body::ContactBody;
-use crate::equilibrium::law::{self, Linearization};
+use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{ContactProblem, ContactRows};
 use crate::linear::dense::multiply;
 use crate::linear::vector::{add_scaled, dot};
@@ -109,7 +109,7 @@ impl CompliantContact {
         let mut residual = vec![0.0; self.row_count()];
         for node in &boundary.points {
             let range = node.rows();
-            law::project(&arguments[range.clone()], node.friction, &mut residual[range]);
+            node.project(&arguments[range.clone()], &mut residual[range]);
         }
         residual.iter_mut().zip(forces).for_each(|(projected, force)| *projected = force - *projected);
         for (column, load) in self.resultant.iter().enumerate() {
@@ -138,7 +138,7 @@ impl CompliantContact {
     /// Derivatives of Π selected at given arguments x.
     pub fn linearize(&self, arguments: &[f64]) -> Vec<Linearization> {
         let points = self.problem.boundary.points.iter();
-        points.map(|node| Linearization::at(&arguments[node.rows()], node.friction)).collect()
+        points.map(|node| node.linearization(&arguments[node.rows()])).collect()
     }
 
     /// Amplitudes of the bodies' own motions, in mm for dimensionless amplitudes times `unit`.

@@ -24,8 +24,10 @@ pub struct CondensationPattern {
     pub(super) piece: Piece,
     pub(super) axes: NodalAxes,
     symbolic: Arc<SymbolicFactor>,
-    /// The contact nodes by their places in the piece.
+    /// The nodes in contact rows, ascending, by their places in the piece.
     pub(super) contact: Vec<usize>,
+    /// The same nodes by their numbers in the mesh.
+    contact_nodes: Vec<u32>,
 }
 
 /// A condensed body without loads.
@@ -39,15 +41,16 @@ pub struct CondensedBody {
 }
 
 impl CondensationPattern {
-    /// The pattern of a body with given contact nodes.
+    /// The pattern of a body with given nodes in contact rows, ascending.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the analysis fails.
     pub fn new(body: &Body, contact: &[u32]) -> Result<Self, ContactError> {
         let piece = body.whole();
-        let contact: Vec<usize> = contact.iter().filter_map(|&node| piece.local(node)).collect();
+        let known = contact.iter().filter_map(|&node| Some((node, piece.local(node)?)));
+        let (contact_nodes, contact): (Vec<u32>, Vec<usize>) = known.unzip();
         let symbolic = piece.pattern.symbolic(&contact)?;
-        Ok(Self { axes: NodalAxes::new(body, &piece), piece, symbolic, contact })
+        Ok(Self { axes: NodalAxes::new(body, &piece), piece, symbolic, contact, contact_nodes })
     }
 
     /// Condenses one shape.
@@ -76,6 +79,16 @@ impl CondensationPattern {
             schur[(dof, dof)] -= shift;
         }
         Ok(CondensedBody { pattern: Arc::clone(self), schur, factor, shift })
+    }
+
+    /// The place of a node of the mesh among the nodes in contact rows.
+    pub(super) fn contact_place(&self, node: u32) -> Option<usize> {
+        self.contact_nodes.binary_search(&node).ok()
+    }
+
+    /// The nodes in contact rows by their numbers in the mesh.
+    pub(super) fn contact_nodes(&self) -> &[u32] {
+        &self.contact_nodes
     }
 
     /// u_D, mm: what supports prescribe at held dofs, 0 at free ones.

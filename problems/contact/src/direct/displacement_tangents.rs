@@ -13,23 +13,23 @@ use crate::linear::dense::multiply;
 use crate::linear::vector::add_scaled;
 use faer::Mat;
 
-/// u′ per change: three entries along the axes per node of every body, lower first, mm; `forces`: r over the lower body
-/// in the coordinates of its nodes, N, one column per change.
+/// u′ per change: three entries along the axes per node of every body, mm; `forces`: r over the bodies that controls
+/// shape, in the coordinates of their nodes, N, one column per change.
 pub(super) fn displacement_tangents(
     contact: &CompliantContact,
-    forces: Mat<f64>,
+    forces: Vec<(usize, Mat<f64>)>,
     loads: &ShapeLoads,
     found: &CondensedTangents,
 ) -> Vec<Vec<f64>> {
-    let count = forces.ncols();
+    let count = loads.approaches.len();
     let own = |amplitudes: &Vec<f64>| contact.own_amplitudes(amplitudes, contact.unit * contact.load);
     let amplitudes: Vec<Vec<Vec<f64>>> = found.amplitudes.iter().map(own).collect();
     let mut displacements = vec![Vec::new(); count];
-    let mut forces = Some(forces);
+    let mut forces = forces.into_iter().peekable();
     for (number, body) in contact.bodies.iter().enumerate() {
         let pattern = &body.stiff().condensed.pattern;
-        // The lower body alone changes its shape.
-        let mut right = forces.take().unwrap_or_else(|| Mat::zeros(pattern.piece.dof_count(), count));
+        let own = forces.next_if(|(shaped, _)| *shaped == number);
+        let mut right = own.map_or_else(|| Mat::zeros(pattern.piece.dof_count(), count), |(_, forces)| forces);
         for column in 0..count {
             let held = body.contact_forces(&found.tangents.forces[column]);
             let on_contact = loads.contact[number].col_as_slice(column);

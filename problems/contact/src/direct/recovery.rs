@@ -7,7 +7,7 @@ use crate::linear::vector::add_scaled;
 use std::sync::Arc;
 
 impl DirectSolver {
-    /// All bodies of a solved shape, lower first. Nothing is torn: each body is one subdomain.
+    /// All bodies of a solved shape, in the order of the scene. Nothing is torn: each body is one subdomain.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh.
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn a_state_solves_for_its_displacements_once() {
         let scene = hertz().expect("the example").with_bricks([3; 3], [1; 3]);
-        let controls = scene.shape.start();
+        let controls = scene.start();
         let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
         let solver = DirectSolver::new(Arc::clone(&problem)).expect("a pattern");
         let state = solver.solve(&controls, None, 1e-10).expect("a state").solution;

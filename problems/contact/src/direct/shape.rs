@@ -1,10 +1,9 @@
 //! How a shape enters a condensed state: sums over cells, and the contact rows.
 //!
 //! ```text
-//! ∂J/∂x = −pᵀ (∂K u − ∂f)/∂x − Σ_rows (λ_r p + η_r u)·∂d_r/∂x + Σ_nodes η_N ∂gap/∂x
-//! r = −∂(K u − f),   −Σ_rows λ_r ∂d_r at the contact nodes;     ∂d_r·u − ∂gap over the rows
+//! ∂J/∂x = −pᵀ (∂K u − ∂f)/∂x − Σ_rows Σ_sides (λ_r p + η_r u)·∂(w d_r)/∂x + Σ_nodes η_N ∂gap/∂x
+//! r = −∂(K u − f),   −Σ_rows λ_r ∂(w d_r) at the nodes of the rows;     ∂(w d_r)·u − ∂gap over the rows
 //! ```
-//! In sums over rows, u and p are the displacements of a contact node less those of its partner.
 
 use crate::body::shape_force::shape_forces;
 use crate::body::shape_sensitivity::position_sensitivities;
@@ -12,104 +11,100 @@ use crate::direct::adjoint::CondensedAdjoint;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::direct::tangents::ShapeLoads;
-use crate::equilibrium::{RowChange, RowSensitivities};
+use crate::equilibrium::RowChange;
+use crate::equilibrium::problem::add_at;
+use crate::equilibrium::row_work::{NodeValues, changed_forces, row_approaches, row_sensitivities};
 use crate::linear::vector::add_scaled;
 use crate::shape::Velocities;
 use faer::Mat;
 
 impl DirectSolver {
-    /// ∂J/∂x per node of the lower body, from its displacements u and their adjoint p.
+    /// ∂J/∂x per node of all bodies, from the adjoint displacements p of the bodies that controls shape.
     pub(super) fn shape_derivative(
         &self,
         state: &DirectState,
-        displacements: [&[f64]; 2],
+        adjoint_displacements: &[(usize, Vec<f64>)],
         adjoint: &CondensedAdjoint,
     ) -> Vec<[f64; 3]> {
         let (problem, contact) = (&self.problem, &state.contact);
-        let (body, piece) = (&problem.bodies[0], &self.patterns[0].piece);
-        let mut result = vec![[0.0; 3]; body.mesh.node_count()];
-        let moves = |node| problem.map.moves(node);
-        for (node, value) in position_sensitivities(body, piece, &state.positions[0], displacements, moves) {
-            (0..3).for_each(|axis| result[node as usize][axis] += value[axis]);
-        }
-        let eta = &adjoint.multipliers;
-        let points = problem.boundary.points.iter();
-        let mut rows: Vec<RowSensitivities> =
-            points.map(|point| RowSensitivities { gap: eta[point.start], ..RowSensitivities::default() }).collect();
-        if !problem.geometry.is_fixed() {
-            let lambda = &state.solution.forces;
-            let u = contact_values(contact, &state.contact_displacements());
-            let p = contact_values(contact, &adjoint.displacements);
-            for (index, (own, point)) in rows.iter_mut().zip(&problem.boundary.points).enumerate() {
-                let of_row = |row: usize| {
-                    std::array::from_fn(|axis| -(lambda[row] * p[index][axis] + eta[row] * u[index][axis]))
-                };
-                own.directions = point.rows().map(of_row).collect();
+        let mut result = problem.no_sensitivities();
+        for (number, p) in adjoint_displacements {
+            let (body, piece, moves) =
+                (&problem.bodies[*number], &self.patterns[*number].piece, |node| problem.map.moves(*number, node));
+            let displacements = [state.displacement(*number), p];
+            for (node, value) in position_sensitivities(body, piece, &state.positions[*number], displacements, moves) {
+                add_at(&mut result, problem.node_number(*number, node), value);
             }
         }
-        contact.rows.pull_back(&problem.boundary, &rows, &mut result);
+        let changes = !problem.geometry.is_fixed();
+        let displacements = changes.then(|| {
+            [&state.contact_displacements(), &adjoint.displacements].map(|values| node_values(contact, values))
+        });
+        let displacements = displacements.as_ref().map(|[u, p]| [u, p]);
+        let forces = [state.solution.forces.as_slice(), adjoint.multipliers.as_slice()];
+        let rows = row_sensitivities((&problem.boundary, &contact.rows), forces, displacements);
+        let moves = |body: usize, node: u32| problem.map.moves(body, node);
+        contact.rows.pull_back(&problem.boundary, &rows, moves, |body, node, sensitivity| {
+            add_at(&mut result, problem.node_number(body, node), sensitivity);
+        });
         result
     }
 
-    /// −∂(K u − f) over the lower body in the coordinates of its nodes, 0 at held dofs, N, one column per field of
-    /// velocities.
-    pub(super) fn shape_forces(&self, state: &DirectState, velocities: &Velocities<'_>) -> Mat<f64> {
-        let (body, piece) = (&self.problem.bodies[0], &self.patterns[0].piece);
-        let mut forces = shape_forces(body, piece, &state.positions[0], state.displacement(0), velocities);
-        let axes = &self.patterns[0].axes;
-        forces.iter_mut().for_each(|forces| axes.free_forces(forces));
-        Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof])
+    /// −∂(K u − f) over the bodies that controls shape, in the coordinates of their nodes, 0 at held dofs, N, one column
+    /// per field of velocities.
+    pub(super) fn shape_forces(&self, state: &DirectState, velocities: &Velocities<'_>) -> Vec<(usize, Mat<f64>)> {
+        let of_body = |number: usize| {
+            let (body, piece) = (&self.problem.bodies[number], &self.patterns[number].piece);
+            let (positions, u) = (&state.positions[number], state.displacement(number));
+            let mut forces = shape_forces((number, body), piece, positions, u, velocities);
+            let axes = &self.patterns[number].axes;
+            forces.iter_mut().for_each(|forces| axes.free_forces(forces));
+            (number, Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof]))
+        };
+        self.problem.map.shaped_bodies().map(of_body).collect()
     }
 
     /// What fields of velocities do to the contact problem, given their [`shape_forces`](Self::shape_forces).
-    pub(super) fn shape_loads(&self, state: &DirectState, velocities: &Velocities<'_>, forces: Mat<f64>) -> ShapeLoads {
+    pub(super) fn shape_loads(
+        &self,
+        state: &DirectState,
+        velocities: &Velocities<'_>,
+        forces: Vec<(usize, Mat<f64>)>,
+    ) -> ShapeLoads {
         let (problem, contact) = (&self.problem, &state.contact);
         let of_column = |column| contact.rows.changes(&problem.boundary, velocities, column);
         let changes: Vec<Vec<RowChange>> = (0..velocities.count()).map(of_column).collect();
         let sizes = contact.bodies.iter().map(|body| body.load.free.len());
         let mut turned: Vec<Mat<f64>> = sizes.map(|size| Mat::zeros(size, velocities.count())).collect();
         let turns = !problem.geometry.is_fixed();
-        let u = if turns { contact_values(contact, &state.contact_displacements()) } else { Vec::new() };
+        let u = turns.then(|| node_values(contact, &state.contact_displacements()));
         let mut approaches = Vec::with_capacity(changes.len());
         for (column, changes) in changes.iter().enumerate() {
-            let mut approach = vec![0.0; problem.boundary.row_count];
-            for (index, (point, change)) in problem.boundary.points.iter().zip(changes).enumerate() {
-                approach[point.start] -= change.gap;
-                if turns {
-                    let rows = point.rows().zip(&change.directions);
-                    rows.for_each(|(row, d)| approach[row] += (0..3).map(|axis| d[axis] * u[index][axis]).sum::<f64>());
-                }
-            }
-            approaches.push(approach);
+            let nodes = problem.boundary.points.iter().zip(&contact.rows.nodes).zip(changes);
+            approaches.push(nodes.flat_map(|(node, change)| row_approaches(node, change, u.as_ref())).collect());
             if turns {
                 add_turned_forces(contact, &state.solution.forces, changes, &mut turned, column);
             }
         }
         let mut on_contact = turned.clone();
-        on_contact[0] += contact.bodies[0].stiff().condensed.condense_loads(forces);
+        for (number, forces) in forces {
+            on_contact[number] += contact.bodies[number].stiff().condensed.condense_loads(forces);
+        }
         ShapeLoads { contact: on_contact, turned, approaches }
     }
 }
 
-/// Σ_sides weight · (contact displacements of the bodies) at every contact node, along the axes.
-fn contact_values(contact: &CompliantContact, displacements: &[Vec<f64>]) -> Vec<[f64; 3]> {
-    let mut places = vec![0; contact.bodies.len()];
-    let value = |point: &crate::equilibrium::ContactPoint| {
-        let mut sum = [0.0; 3];
-        for side in &point.sides {
-            let pattern = &contact.bodies[side.body].stiff().condensed.pattern;
-            let place = places[side.body];
-            places[side.body] += 1;
-            let own = &displacements[side.body][3 * place..];
-            let own = pattern.axes.turn_back_at(pattern.contact[place], [own[0], own[1], own[2]]);
-            (0..3).for_each(|axis| sum[axis] += side.weight * own[axis]);
-        }
-        sum
+/// Vectors over the contact dofs of all bodies, along the axes at the nodes.
+fn node_values(contact: &CompliantContact, values: &[Vec<f64>]) -> NodeValues {
+    let of_body = |(body, values): (&crate::direct::compliant_body::ContactBody, &Vec<f64>)| {
+        let pattern = &body.stiff().condensed.pattern;
+        let nodes = pattern.contact_nodes().iter().zip(&pattern.contact).zip(values.as_chunks::<3>().0);
+        nodes.map(|((&node, &place), own)| (node, pattern.axes.turn_back_at(place, *own))).collect()
     };
-    contact.problem.boundary.points.iter().map(value).collect()
+    NodeValues(contact.bodies.iter().zip(values).map(of_body).collect())
 }
 
-/// Adds −Σ_rows λ_r ∂d_r at the contact nodes to a column of the loads on the contact dofs.
+/// Adds −Σ_rows λ_r ∂(w d_r) at the nodes of the rows to a column of the loads on the contact dofs.
 fn add_turned_forces(
     contact: &CompliantContact,
     lambda: &[f64],
@@ -117,18 +112,15 @@ fn add_turned_forces(
     loads: &mut [Mat<f64>],
     column: usize,
 ) {
-    let mut places = vec![0; contact.bodies.len()];
-    for (point, change) in contact.problem.boundary.points.iter().zip(changes) {
-        let rows = || point.rows().zip(&change.directions);
-        let force: [f64; 3] =
-            std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>());
-        for side in &point.sides {
-            let pattern = &contact.bodies[side.body].stiff().condensed.pattern;
-            let place = places[side.body];
-            places[side.body] += 1;
-            let turned = pattern.axes.turn_at(pattern.contact[place], force);
+    let rows = (&contact.problem.boundary, &*contact.rows);
+    let forces = changed_forces(rows, lambda, changes, contact.bodies.len());
+    for ((body, load), forces) in contact.bodies.iter().zip(loads).zip(&forces.0) {
+        let pattern = &body.stiff().condensed.pattern;
+        for (place, node) in pattern.contact_nodes().iter().enumerate() {
+            let Some(force) = forces.get(node) else { continue };
+            let turned = pattern.axes.turn_at(pattern.contact[place], *force);
             for axis in (0..3).filter(|axis| !pattern.holds(3 * place + axis)) {
-                loads[side.body][(3 * place + axis, column)] += side.weight * turned[axis];
+                load[(3 * place + axis, column)] += turned[axis];
             }
         }
     }

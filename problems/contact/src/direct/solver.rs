@@ -24,6 +24,7 @@ use crate::shelf::Factored;
 use crate::solvers::SolverKind;
 use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
 use nonsmooth::interruption::interrupted;
+use std::collections::BTreeSet;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -42,8 +43,8 @@ pub struct DirectSolver {
     /// What the factors of the bodies depend on beside positions.
     keys: Vec<Arc<CondensationKey>>,
     shelf: Arc<CondensedShelf>,
-    /// The bodies of fixed shape.
-    fixed: OnceLock<Vec<CondensedPart>>,
+    /// The bodies of fixed shape, by number.
+    fixed: OnceLock<Vec<(usize, CondensedPart)>>,
 }
 
 /// A body of a shape without its rows.
@@ -88,8 +89,8 @@ impl DirectSolver {
     pub fn sharing(problem: Arc<ContactProblem>, shelf: Arc<CondensedShelf>) -> Result<Self, ContactError> {
         let pattern = |(number, body)| {
             let sides = problem.boundary.points.iter().flat_map(|point| &point.sides);
-            let contact: Vec<u32> = sides.filter(|side| side.body == number).map(|side| side.node).collect();
-            Ok(Arc::new(CondensationPattern::new(body, &contact)?))
+            let contact: BTreeSet<u32> = sides.filter(|side| side.body == number).map(|side| side.node).collect();
+            Ok(Arc::new(CondensationPattern::new(body, &contact.into_iter().collect::<Vec<u32>>())?))
         };
         let patterns = problem.bodies.iter().enumerate().map(pattern);
         let patterns = patterns.collect::<Result<Vec<Arc<CondensationPattern>>, ContactError>>()?;
@@ -139,18 +140,26 @@ impl DirectSolver {
         configuration: Configuration,
     ) -> Result<(CompliantContact, Positions, f64, usize), ContactError> {
         Stage::Factorization.enter()?;
-        let (lower, is_new) = self.condense_body(0, &configuration)?;
-        let mut factorizations = usize::from(is_new);
+        let map = &self.problem.map;
+        let condensed = |number: usize| Ok((number, self.condense_body(number, &configuration)?));
+        let mut factorizations = 0;
+        let mut bodies: Vec<(usize, CondensedPart)> = Vec::new();
+        for number in map.shaped_bodies() {
+            let (number, (part, is_new)) = condensed(number)?;
+            factorizations += usize::from(is_new);
+            bodies.push((number, part));
+        }
         if self.fixed.get().is_none() {
             // These bodies keep their shape: they are factored at the first call and shared afterwards.
-            let bodies = (1..self.patterns.len()).map(|number| self.condense_body(number, &configuration));
-            let (bodies, new): (Vec<CondensedPart>, Vec<bool>) =
-                bodies.collect::<Result<Vec<_>, ContactError>>()?.into_iter().unzip();
-            factorizations += new.into_iter().filter(|is_new| *is_new).count();
+            let fixed = (0..self.patterns.len()).filter(|&number| !map.shapes(number)).map(condensed);
+            let fixed = fixed.collect::<Result<Vec<_>, ContactError>>()?;
+            factorizations += fixed.iter().filter(|(_, (_, is_new))| *is_new).count();
             // Another thread may have been first; its factors are the same.
-            let _ = self.fixed.set(bodies);
+            let _ = self.fixed.set(fixed.into_iter().map(|(number, (part, _))| (number, part)).collect());
         }
-        let bodies = std::iter::once(lower).chain(self.fixed.get().into_iter().flatten().cloned()).enumerate();
+        bodies.extend(self.fixed.get().into_iter().flatten().cloned());
+        bodies.sort_by_key(|(number, _)| *number);
+        let bodies = bodies.into_iter();
         let boundary = &self.problem.boundary;
         let with_rows = |(number, (body, load)): (usize, CondensedPart)| {
             let rows = BodyRows::new(number, &body.factors.condensed, boundary, &configuration.rows);
@@ -277,7 +286,7 @@ impl ContactSolver for DirectSolver {
         self.check(state)?;
         let (direction, displacements) = self.problem.parts_of(direction)?;
         if state.load == 0.0 {
-            return Ok(Sensitivities::at_rest(self.problem.bodies[0].mesh.node_count()));
+            return Ok(Sensitivities::at_rest(&self.problem));
         }
         let clock = Instant::now();
         Stage::Adjoint.enter()?;
@@ -286,13 +295,17 @@ impl ContactSolver for DirectSolver {
         let adjoint = adjoint(&state.contact, &solution.unknowns, &solution.linearizations, direction, &loads);
         let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
         let value_error = value_error.with_displacements(loads.iter().map(|load| load.size).sum());
-        let u = state.displacement(0);
-        let none = || vec![0.0; u.len()];
-        let load = loads.into_iter().next().map_or_else(none, |load| load.full);
-        let p = state.contact.bodies[0].extend_under(&adjoint.displacements[0], &adjoint.multipliers, &load);
+        let mut loads: Vec<Vec<f64>> = loads.into_iter().map(|load| load.full).collect();
+        let extended = |body: usize| {
+            let none = || vec![0.0; state.displacement(body).len()];
+            let load = loads.get_mut(body).map_or_else(none, std::mem::take);
+            let p = state.contact.bodies[body].extend_under(&adjoint.displacements[body], &adjoint.multipliers, &load);
+            (body, p)
+        };
+        let adjoint_displacements: Vec<(usize, Vec<f64>)> = self.problem.map.shaped_bodies().map(extended).collect();
         let adjoint_seconds = clock.elapsed().as_secs_f64();
         Stage::ShapeDerivative.enter()?;
-        let positions = self.shape_derivative(state, [u, &p], &adjoint);
+        let positions = self.shape_derivative(state, &adjoint_displacements, &adjoint);
         if positions.as_flattened().iter().any(|value| !value.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
         }

@@ -4,8 +4,8 @@
 //! r = −∂(K u + Bᵀλ − f),   r_c: what it puts on the contact dofs,   δd = B C r_c + ∂B u − ∂g,   δe = Nᵀ r_c
 //! M (δλ; δa) = (D δd; δe),   M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a),   δw = δd − C δλ + R δa
 //! ```
-//! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of the upper body are those of its reference
-//! shape, so that the change of the lower body's own motions is the only one; it is part of r.
+//! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of bodies of fixed shape do not change; what
+//! those of other bodies change is part of r.
 
 use crate::direct::compliant_body::ContactBody;
 use crate::direct::compliant_contact::CompliantContact;

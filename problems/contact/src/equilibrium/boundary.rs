@@ -1,37 +1,41 @@
 //! The contact nodes and the layout of their multipliers.
 //!
 //! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without
-//! friction, and as many as there are free directions beside the normal (method.md section 3).
+//! friction, and as many as there are free directions beside the normal (method.md section 3). The nodes of the contacts
+//! of a scene follow each other; those that are glued come last.
 
-use crate::body::mesh::CellFace;
 use crate::body::{Body, beyond};
+use crate::equilibrium::contact_part::ContactPart;
 use crate::error::SceneError;
 use crate::names::nodes_of;
-use crate::scene::ContactScene;
+use crate::scene::{ContactScene, Scene};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// Part of a prescribed jump, relative to the displacements that it is the difference of, that is rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// A node of a body in the rows of a contact node.
+/// A node of a body that may be in the rows of a contact node; its weight depends on the shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
     /// The body.
     pub body: usize,
     /// The node of its mesh.
     pub node: u32,
-    /// Its weight in jumps: 1 for the contact node itself, −1 for its partner.
-    pub weight: f64,
     /// The displacement that supports prescribe to it along its held directions, mm.
     pub prescribed: [f64; 3],
 }
 
-/// A node of the contact surface with its rows.
+/// A node of a slave face with its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPoint {
-    /// The node of the lower body.
+    /// The contact, by its place in the scene.
+    pub contact: usize,
+    /// The slave body.
+    pub body: usize,
+    /// The node of its mesh.
     pub node: u32,
-    /// The nodes in its rows, its own first.
+    /// The nodes in its rows, its own first, then those of the master that have weights at some shape.
     pub sides: Vec<Side>,
     /// Position of its normal row in a packed contact vector.
     pub start: usize,
@@ -41,10 +45,10 @@ pub struct ContactPoint {
     pub can_slide: bool,
     /// Friction coefficient 𝓕.
     pub friction: f64,
-    /// Orthonormal directions in which one of its nodes is free.
+    /// Whether it is glued to the master.
+    pub is_tied: bool,
+    /// Orthonormal directions in which it is free.
     pub free: Vec<[f64; 3]>,
-    /// The part of its prescribed jump along directions in which all its nodes are held, mm: no row has it.
-    pub imposed: [f64; 3],
 }
 
 impl ContactPoint {
@@ -53,67 +57,84 @@ impl ContactPoint {
         1 + self.tangents
     }
 
-    /// Σ weight · prescribed displacement of its nodes, mm: the jump where nothing else moves.
-    pub fn prescribed_jump(&self) -> [f64; 3] {
-        prescribed_jump(&self.sides)
+    /// Its rows in a packed contact vector.
+    pub fn rows(&self) -> Range<usize> {
+        self.start..self.start + self.row_count()
     }
 
-    /// Its rows in a packed contact vector.
-    pub fn rows(&self) -> std::ops::Range<usize> {
-        self.start..self.start + self.row_count()
+    /// Σ weight · prescribed displacement of its nodes, mm, for the weights of a shape: the jump where nothing else
+    /// moves.
+    pub fn prescribed_jump(&self, weights: &[f64]) -> [f64; 3] {
+        let sides = || self.sides.iter().zip(weights);
+        std::array::from_fn(|axis| sides().map(|(side, weight)| weight * side.prescribed[axis]).sum())
+    }
+
+    /// The part of the prescribed jump across the directions in which it is free, which no row has, mm.
+    pub(crate) fn imposed(&self, weights: &[f64]) -> [f64; 3] {
+        let mut jump = self.prescribed_jump(weights);
+        let size = |vector: [f64; 3]| vector.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+        let largest = self.sides.iter().map(|side| size(side.prescribed)).fold(0.0, f64::max);
+        for direction in &self.free {
+            let share: f64 = (0..3).map(|axis| direction[axis] * jump[axis]).sum();
+            (0..3).for_each(|axis| jump[axis] -= share * direction[axis]);
+        }
+        if size(jump) > ROUNDING * largest { jump } else { [0.0; 3] }
     }
 }
 
 /// All contact nodes of a scene.
 #[derive(Debug, Clone)]
 pub struct ContactBoundary {
-    /// The nodes, ascending.
+    /// The nodes, contact by contact, ascending within each: those that may open, then those that are glued.
     pub points: Vec<ContactPoint>,
     /// Length of a packed contact vector.
     pub row_count: usize,
+    /// Whether any node may take a friction force.
     has_friction: bool,
+    /// The contacts of the scene in the order of their nodes.
+    order: Vec<usize>,
 }
 
 impl ContactBoundary {
-    /// The corners of some faces of the lower body, each with its partner on the upper body where there is one.
+    /// The slave nodes of all contacts with what they may touch.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for names of regions that the mesh does not have.
-    pub(crate) fn new(
-        scene: &ContactScene,
-        bodies: &[Body],
-        faces: &[CellFace],
-        partner: impl Fn(u32) -> Option<u32>,
-    ) -> Result<Self, SceneError> {
-        let lower = &bodies[0];
-        let mut friction_of: Vec<(BTreeSet<u32>, f64)> = Vec::new();
-        for (name, friction) in &scene.friction_by_region {
-            friction_of
-                .push((nodes_of("contact.friction_by_region", name, &lower.mesh)?.into_iter().collect(), *friction));
-        }
+    /// [`SceneError::OutOfRange`] for names of regions that a mesh does not have, and for nodes that two contacts have.
+    pub(crate) fn new(scene: &Scene, bodies: &[Body], parts: &[ContactPart]) -> Result<Self, SceneError> {
         let has_friction = scene.has_friction();
-        let nodes: BTreeSet<u32> = faces.iter().flat_map(|face| corners(lower, *face)).collect();
-        let mut row_count = 0;
-        let point = |node: u32| {
-            let side = |body: usize, node: u32, weight: f64| {
-                let prescribed = bodies[body].prescribed(node);
-                Side { body, node, weight, prescribed }
-            };
-            let sides = std::iter::once(side(0, node, 1.0));
-            let sides: Vec<Side> = sides.chain(partner(node).map(|node| side(1, node, -1.0))).collect();
-            let free = free_directions(bodies, &sides);
-            let across = free.len().checked_sub(1)?;
-            let named = friction_of.iter().rev().find(|(nodes, _)| nodes.contains(&node));
-            let friction = named.map_or(scene.friction, |(_, friction)| *friction);
-            let tangents = if has_friction { across } else { 0 };
-            let (start, can_slide, imposed) = (row_count, across > 0, imposed(&sides, &free));
-            let point = ContactPoint { node, sides, start, tangents, can_slide, friction, free, imposed };
-            row_count += point.row_count();
-            Some(point)
-        };
-        // A node that supports hold altogether has no contact row.
-        let points: Vec<ContactPoint> = nodes.into_iter().filter_map(point).collect();
-        Ok(Self { points, row_count, has_friction })
+        let mut order: Vec<usize> = (0..parts.len()).collect();
+        order.sort_by_key(|&index| scene.contacts[index].is_tied());
+        let mut points = Vec::new();
+        for &index in &order {
+            let (contact, part) = (&scene.contacts[index], &parts[index]);
+            let friction_of = friction_by_node(scene, index, &bodies[part.slave])?;
+            for (node, masters) in part.nodes() {
+                let side = |body: usize, node: u32| Side { body, node, prescribed: bodies[body].prescribed(node) };
+                let masters = masters.iter().map(|&master| side(part.master_body(), master));
+                let sides: Vec<Side> = std::iter::once(side(part.slave, node)).chain(masters).collect();
+                let has_weight = |side: usize| part.has_weight(node, sides[side].node);
+                let free = free_directions(bodies, &sides, has_weight);
+                // A node that supports hold altogether has no contact row.
+                let Some(across) = free.len().checked_sub(1) else { continue };
+                let tangents = if has_friction || contact.is_tied() { across } else { 0 };
+                points.push(ContactPoint {
+                    contact: index,
+                    body: part.slave,
+                    node,
+                    sides,
+                    start: 0,
+                    tangents,
+                    can_slide: across > 0,
+                    friction: friction_of(node),
+                    is_tied: contact.is_tied(),
+                    free,
+                });
+            }
+        }
+        let mut this = Self { points, row_count: 0, has_friction, order };
+        this.refuse_common_nodes(scene, bodies)?;
+        this.number();
+        Ok(this)
     }
 
     /// Leaves out nodes whose normals supports hold.
@@ -123,6 +144,11 @@ impl ContactBoundary {
             index += 1;
             keeps(index - 1)
         });
+        self.number();
+    }
+
+    /// Numbers the rows.
+    fn number(&mut self) {
         self.row_count = 0;
         for point in &mut self.points {
             point.start = self.row_count;
@@ -130,39 +156,80 @@ impl ContactBoundary {
         }
     }
 
+    /// Refuses a node on the slave faces of two contacts: its rows would depend on each other.
+    fn refuse_common_nodes(&self, scene: &Scene, bodies: &[Body]) -> Result<(), SceneError> {
+        let mut known = BTreeSet::new();
+        for point in &self.points {
+            if !known.insert((point.body, point.node)) {
+                let [x1, x2, x3] = bodies[point.body].mesh.nodes()[point.node as usize];
+                let field = format!("{}.slave", scene.contact_field(point.contact));
+                let value = format!("a face with the node at ({x1:.4}, {x2:.4}, {x3:.4}) mm of another contact");
+                let allowed = "slave faces without common nodes (let the other body be the slave, or leave out a row)";
+                return Err(SceneError::out_of_range(field, value, allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// The contacts of the scene in the order of their nodes.
+    pub(crate) fn contacts(&self) -> impl Iterator<Item = usize> + '_ {
+        self.order.iter().copied()
+    }
+
+    /// The nodes of a contact of the scene.
+    pub fn of_contact(&self, contact: usize) -> Range<usize> {
+        let first = self.points.iter().position(|point| point.contact == contact).unwrap_or(0);
+        first..first + self.points.iter().filter(|point| point.contact == contact).count()
+    }
+
+    /// The nodes that may open: all but those that are glued.
+    pub fn contact_points(&self) -> &[ContactPoint] {
+        &self.points[..self.points.partition_point(|point| !point.is_tied)]
+    }
+
     /// Whether the scene has friction, and with it tangential multipliers.
     pub fn has_friction(&self) -> bool {
         self.has_friction
     }
-}
 
-fn prescribed_jump(sides: &[Side]) -> [f64; 3] {
-    std::array::from_fn(|axis| sides.iter().map(|side| side.weight * side.prescribed[axis]).sum())
-}
-
-/// The part of the prescribed jump of some nodes across the directions in which one of them is free.
-fn imposed(sides: &[Side], free: &[[f64; 3]]) -> [f64; 3] {
-    let mut jump = prescribed_jump(sides);
-    let size = |vector: [f64; 3]| vector.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-    let largest = sides.iter().map(|side| size(side.prescribed)).fold(0.0, f64::max);
-    for direction in free {
-        let share: f64 = (0..3).map(|axis| direction[axis] * jump[axis]).sum();
-        (0..3).for_each(|axis| jump[axis] -= share * direction[axis]);
+    /// Whether some nodes are glued to their master.
+    pub fn has_ties(&self) -> bool {
+        self.points.iter().any(|point| point.is_tied)
     }
-    if size(jump) > ROUNDING * largest { jump } else { [0.0; 3] }
 }
 
-/// Corners of a face of a body.
-pub(crate) fn corners(body: &Body, face: CellFace) -> impl Iterator<Item = u32> + '_ {
-    let corners = body.mesh.cell(face.cell as usize).kind.corner_count();
-    body.mesh.face_nodes(face).take(corners)
+/// The friction coefficient of every node of the slave face of a contact.
+fn friction_by_node<'s>(scene: &'s Scene, index: usize, body: &Body) -> Result<impl Fn(u32) -> f64 + 's, SceneError> {
+    let contact: &ContactScene = &scene.contacts[index];
+    let field = format!("{}.friction_by_region", scene.contact_field(index));
+    let mut regions: Vec<(BTreeSet<u32>, f64)> = Vec::new();
+    for (name, friction) in &contact.friction_by_region {
+        regions.push((nodes_of(&field, name, &body.mesh)?.into_iter().collect(), *friction));
+    }
+    Ok(move |node: u32| {
+        let named = regions.iter().rev().find(|(nodes, _)| nodes.contains(&node));
+        named.map_or(contact.friction, |(_, friction)| *friction)
+    })
 }
 
-/// Orthonormal directions in which one of some nodes is free: those that not all of them are held in.
-fn free_directions(bodies: &[Body], sides: &[Side]) -> Vec<[f64; 3]> {
-    let mut free: Vec<[f64; 3]> = Vec::new();
-    for direction in sides.iter().flat_map(|side| bodies[side.body].free(side.node)) {
-        free.extend(beyond(&free, direction));
+/// Share of a held direction from which a master node counts as held along it.
+const HELD_ALONG: f64 = 1e-8;
+
+/// Directions in which the first of some nodes is free, and those in which supports hold it but none of the others: its
+/// jumps along them are unknown. In a plane of symmetry, supports hold nodes on both sides.
+fn free_directions(bodies: &[Body], sides: &[Side], has_weight: impl Fn(usize) -> bool) -> Vec<[f64; 3]> {
+    let own = &bodies[sides[0].body];
+    let mut free = own.free(sides[0].node);
+    let others: Vec<&Side> = (1..sides.len()).filter(|&side| has_weight(side)).map(|side| &sides[side]).collect();
+    for direction in own.held(sides[0].node) {
+        let is_held = |side: &&&Side| {
+            let held = bodies[side.body].held(side.node).iter();
+            let shares = held.map(|other| (0..3).map(|axis| other[axis] * direction[axis]).sum::<f64>());
+            shares.map(|share| share * share).sum::<f64>().sqrt() > HELD_ALONG
+        };
+        if !others.is_empty() && !others.iter().any(|side| is_held(&side)) {
+            free.extend(beyond(&free, *direction));
+        }
     }
     free
 }

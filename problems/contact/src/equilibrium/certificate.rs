@@ -1,7 +1,7 @@
 //! Residual certificates of a contact state and its distance to the nearest kink.
 
-use crate::equilibrium::ContactBoundary;
-use crate::equilibrium::law::{self, tangential_norm};
+use crate::equilibrium::law::tangential_norm;
+use crate::equilibrium::{ContactBoundary, ContactPoint};
 use crate::error::ContactError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -86,7 +86,7 @@ impl Kink {
     pub fn of(boundary: &ContactBoundary, arguments: &[f64]) -> Self {
         let largest = boundary.points.iter().map(|point| arguments[point.start].abs()).fold(0.0, f64::max);
         let mut kink = Self { smallest_margin: f64::INFINITY, weakly_active: 0 };
-        for point in &boundary.points {
+        for point in boundary.points.iter().filter(|point| !point.is_tied) {
             let x = &arguments[point.rows()];
             let mut margin = if largest > 0.0 { x[0].abs() / largest } else { 0.0 };
             if x[0] > 0.0 && x.len() > 1 {
@@ -106,7 +106,7 @@ pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[
     for point in &boundary.points {
         let range = point.rows();
         let x: Vec<f64> = range.clone().map(|row| forces[row] + stiffness * jumps[row]).collect();
-        law::project(&x, point.friction, &mut residual[range.clone()]);
+        point.project(&x, &mut residual[range.clone()]);
         for row in range {
             residual[row] = forces[row] - residual[row];
         }
@@ -119,7 +119,11 @@ pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[
 /// this is positive can wedge a body in.
 pub(crate) fn wedging(boundary: &ContactBoundary, jumps: &[f64]) -> Vec<f64> {
     let of_node = |friction: f64, jump: &[f64]| friction * tangential_norm(jump) + jump[0];
-    boundary.points.iter().map(|point| of_node(point.friction, &jumps[point.rows()])).collect()
+    let of_point = |point: &ContactPoint| match point.is_tied {
+        true => 0.0,
+        false => of_node(point.friction, &jumps[point.rows()]),
+    };
+    boundary.points.iter().map(of_point).collect()
 }
 
 /// Complementarity, cone and dissipation residuals of packed multipliers and jumps, relative to `load`.
@@ -134,6 +138,11 @@ pub fn law_residuals(
     for point in &boundary.points {
         let range = point.rows();
         let (force, jump) = (&forces[range.clone()], &jumps[range]);
+        if point.is_tied {
+            let largest = jump.iter().fold(0.0, |largest: f64, jump| largest.max(jump.abs()));
+            residuals.complementarity = residuals.complementarity.max(stiffness * largest);
+            continue;
+        }
         let opening = -stiffness * jump[0];
         residuals.complementarity = residuals.complementarity.max(force[0].min(opening).abs());
         if force.len() > 1 {

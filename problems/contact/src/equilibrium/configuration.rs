@@ -1,9 +1,9 @@
 //! One shape of a problem before a contact solver works on it.
 
 use crate::equilibrium::modes::{Motion, RigidScene};
-use crate::equilibrium::problem::Positions;
-use crate::equilibrium::{ContactProblem, ContactRows, Stage};
+use crate::equilibrium::{ContactPoint, ContactProblem, ContactRows, Stage};
 use crate::error::ContactError;
+use crate::shape::Positions;
 use std::sync::Arc;
 
 /// Rounding of a gap over the distance of its node from the origin, or over the gap: both are sums of a few products.
@@ -44,10 +44,11 @@ impl Configuration {
         let grounded = rigid.analyse(&problem.boundary)?;
         let prescribed = problem.largest_prescribed();
         if rigid.total_load() == 0.0 && prescribed == 0.0 {
-            let size = |node: u32| positions[0][node as usize].iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+            let size = |point: &ContactPoint| {
+                positions[point.body][point.node as usize].iter().fold(0.0, |size: f64, x| size.max(x.abs()))
+            };
             let nodes = problem.boundary.points.iter().zip(&rows.nodes);
-            let mut rounding =
-                nodes.map(|(point, node)| -node.gap <= GAP_ROUNDING * size(point.node).max(node.gap.abs()));
+            let mut rounding = nodes.map(|(point, node)| -node.gap <= GAP_ROUNDING * size(point).max(node.gap.abs()));
             if rounding.all(|is_rounding| is_rounding) {
                 // Bodies that just touch are at rest: rounding would press them together.
                 rows.nodes.iter_mut().for_each(|node| node.gap = node.gap.max(0.0));

@@ -41,8 +41,8 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<ContactState<Self::State>, ContactError>;
 
-    /// Sensitivities of the positions of the nodes of the lower body for a dual: j = ∂J/∂λ in packed rows, then, where
-    /// J depends on the displacements, l = ∂J/∂u with three entries per node of every body, lower first. What J depends
+    /// Sensitivities of the positions of the nodes of all bodies for a dual: j = ∂J/∂λ in packed rows, then, where
+    /// J depends on the displacements, l = ∂J/∂u with three entries per node of every body, in the order of the scene. What J depends
     /// on the shape itself is not part of them. `tolerance`: relative residual of the adjoint, for solvers that
     /// iterate.
     ///
@@ -95,7 +95,7 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         Ok(0.0)
     }
 
-    /// All bodies of a solved shape, lower first.
+    /// All bodies of a solved shape, in the order of the scene.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh.
@@ -119,7 +119,7 @@ pub struct Tangents {
     /// Changes of the openings (normal jump less gap) of the contact nodes per change of the controls, mm.
     pub openings: Vec<Vec<f64>>,
     /// Changes of the displacements per change of the controls, where they were asked for: three entries along the axes
-    /// per node of every body, lower first, mm. They are total derivatives at fixed nodes of the mesh, which move with
+    /// per node of every body, mm. They are total derivatives at fixed nodes of the mesh, which move with
     /// the shape. Of several processes, the first one alone has the entries.
     pub displacements: Option<Vec<Vec<f64>>>,
     /// Relative residual of the linearized contact problems.
@@ -150,7 +150,7 @@ impl Tangents {
     }
 }
 
-/// Sensitivities of the positions of the nodes of the lower body, and what they cost.
+/// Sensitivities of the positions of the nodes of all bodies, and what they cost.
 #[derive(Debug, Clone)]
 pub struct Sensitivities {
     /// ∂J/∂x per node and component, mm⁻¹ times the unit of J; 0 for nodes that do not move with the shape.
@@ -167,9 +167,9 @@ pub struct Sensitivities {
 
 impl Sensitivities {
     /// Sensitivities of bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
-    pub(crate) fn at_rest(nodes: usize) -> Self {
+    pub(crate) fn at_rest(problem: &ContactProblem) -> Self {
         Self {
-            positions: vec![[0.0; 3]; nodes],
+            positions: problem.no_sensitivities(),
             applications: 0,
             adjoint_seconds: 0.0,
             shape_seconds: 0.0,

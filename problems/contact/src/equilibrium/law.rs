@@ -92,6 +92,18 @@ impl Linearization {
     }
 }
 
+impl ContactPoint {
+    /// The derivative of Π selected at the packed rows x of the node; all rows of a glued node are held.
+    pub(crate) fn linearization(&self, x: &[f64]) -> Linearization {
+        if self.is_tied { Linearization::Stick } else { Linearization::at(x, self.friction) }
+    }
+
+    /// Π(x) for the packed rows of the node, written to `result`; x itself where it is glued.
+    pub(crate) fn project<T: Scalar>(&self, x: &[T], result: &mut [T]) {
+        if self.is_tied { result.copy_from_slice(x) } else { project(x, self.friction, result) }
+    }
+}
+
 /// |x_T| of the packed rows of one node.
 pub fn tangential_norm(x: &[f64]) -> f64 {
     match x.len() {

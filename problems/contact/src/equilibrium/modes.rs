@@ -69,7 +69,7 @@ pub struct RigidScene {
     pub arms: Vec<(usize, [f64; 3])>,
     /// Nodal loads: (body, point in mm, force in N).
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
-    /// The rows of every contact node: the normal one, then the tangential ones.
+    /// The rows of every contact node: the normal one, then the tangential ones; none where nothing lies opposite.
     pub contact: Vec<Vec<Vec<RowPart>>>,
     /// What the rotations of each body refer to.
     pub frames: Vec<Frame>,
@@ -155,7 +155,8 @@ impl RigidScene {
         let load = self.contact_row(&self.loads);
         let contact = self.contact.iter().map(|rows| rows.iter().map(|row| project(&self.contact_row(row))).collect());
         let rows: Vec<Vec<DVector<f64>>> = contact.collect();
-        let friction: Vec<f64> = boundary.points.iter().map(|point| point.friction).collect();
+        let friction =
+            boundary.points.iter().map(|point| (!point.is_tied).then_some(point.friction)).collect::<Vec<_>>();
         let scale = self.total_load();
         let (rest, doubt) = ConeProjection { rows: &rows, friction: &friction }.residual(&project(&load));
         let allowed = doubt.max(UNLOADED * scale);
@@ -182,7 +183,11 @@ impl RigidScene {
             .filter(|(_, value)| value.abs() > 0.3 * largest)
             .map(|(index, value)| {
                 let body = &self.names[index / MOTIONS];
-                let body = if body == "body" { "the body".to_owned() } else { format!("the {body} body") };
+                let body = match body.as_str() {
+                    "body" => "the body".to_owned(),
+                    "lower" | "upper" => format!("the {body} body"),
+                    other => format!("the body \"{other}\""),
+                };
                 let sign = if *value < 0.0 { "negative " } else { "" };
                 let kind = if index % MOTIONS < 3 { "translation along" } else { "rotation about" };
                 format!("{sign}{kind} x{} of {body}", index % 3 + 1)
@@ -232,7 +237,8 @@ fn kernel(rows: &[DVector<f64>], size: usize) -> Vec<DVector<f64>> {
 struct ConeProjection<'a> {
     /// Per node: the normal row and its tangential rows, in coordinates of the free motions.
     rows: &'a [Vec<DVector<f64>>],
-    friction: &'a [f64],
+    /// Per node; none where it is glued.
+    friction: &'a [Option<f64>],
 }
 
 impl ConeProjection<'_> {
@@ -269,7 +275,22 @@ impl ConeProjection<'_> {
     /// with that product.
     fn support(&self, direction: &DVector<f64>) -> Option<(f64, DVector<f64>)> {
         let mut best: Option<(f64, DVector<f64>)> = None;
+        let mut offer = |column: DVector<f64>| {
+            let norm = column.norm();
+            let value = if norm > 0.0 { column.dot(direction) / norm } else { 0.0 };
+            if best.as_ref().is_none_or(|(largest, _)| value > *largest) {
+                best = Some((value, column));
+            }
+        };
         for (rows, friction) in self.rows.iter().zip(self.friction) {
+            if rows.is_empty() {
+                continue;
+            }
+            let Some(friction) = friction else {
+                // Glue pulls as well as it pushes.
+                rows.iter().for_each(|row| offer(if row.dot(direction) < 0.0 { -row } else { row.clone() }));
+                continue;
+            };
             let tangential: Vec<f64> = rows[1..].iter().map(|row| row.dot(direction)).collect();
             let length = tangential.iter().map(|t| t * t).sum::<f64>().sqrt();
             let mut column = rows[0].clone();
@@ -278,11 +299,7 @@ impl ConeProjection<'_> {
                     column += row * (friction * entry / length);
                 }
             }
-            let norm = column.norm();
-            let value = if norm > 0.0 { column.dot(direction) / norm } else { 0.0 };
-            if best.as_ref().is_none_or(|(largest, _)| value > *largest) {
-                best = Some((value, column));
-            }
+            offer(column);
         }
         best
     }
@@ -314,7 +331,7 @@ fn nonnegative_fit(columns: &mut Vec<DVector<f64>>, weights: &mut Vec<f64>, load
 mod tests {
     use crate::body::mesh::BlockFace;
     use crate::equilibrium::ContactProblem;
-    use crate::scene::{CounterSurface, Scene, Support, hertz, signorini};
+    use crate::scene::{CounterSurface, Geometry, Master, Scene, Support, hertz, signorini};
     use crate::shape::ShapeBounds;
 
     /// Supports of two bodies, friction, expected numbers.
@@ -322,11 +339,16 @@ mod tests {
 
     /// Numbers of motions that supports leave free to the lower body and to all, and that contact leaves free as well.
     fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
-        (scene.lower.supports, scene.lower.loads) = (supports[0].to_vec(), Vec::new());
-        if let Some(upper) = &mut scene.upper {
-            (upper.body.supports, upper.body.loads, upper.top) = (supports[1].to_vec(), Vec::new(), 3.0 * height);
+        let plane = |height: f64| CounterSurface::Plane { height };
+        for (body, supports) in scene.bodies.iter_mut().zip(supports) {
+            (body.supports, body.loads) = (supports.to_vec(), Vec::new());
         }
-        scene.counter_surface = CounterSurface::Plane { height };
+        if let Master::Obstacle(surface) = &mut scene.contacts[0].master {
+            *surface = plane(height);
+        }
+        if let Some(Geometry::Block(block)) = scene.bodies.get_mut(1).map(|body| &mut body.geometry) {
+            (block.bottom, block.top) = (plane(height), plane(3.0 * height));
+        }
         let scene = scene.with_friction(friction).with_bricks([4; 3], [2; 3]);
         let scene = scene.with_blocks(|blocks| blocks.size = [1.0; 2]).with_heights(|heights| {
             heights.start_height = height;

@@ -43,7 +43,7 @@ impl ContactProblem {
     pub fn preview(&self) -> Preview {
         let (positions, rows) = (self.start_positions(), self.start_rows());
         let rigid = self.rigid_scene(&positions, rows);
-        let of_body = |(number, (_, scene)): (usize, (&str, &crate::scene::BodyScene))| {
+        let of_body = |(number, scene): (usize, &crate::scene::BodyScene)| {
             let body = &self.bodies[number];
             let motions = rigid.own_motions(number);
             let mut held_faces: Vec<String> = Vec::new();
@@ -59,11 +59,12 @@ impl ContactProblem {
             let free_translations = std::array::from_fn(|axis| is_free(&motions, axis));
             BodyPreview { name: body.name.clone(), held_faces, free_motions: motions.len(), free_translations, load }
         };
+        let gaps = || rows.contact_nodes().iter().filter(|node| node.is_covered).map(|node| node.gap);
         Preview {
-            contact_nodes: rows.nodes.len(),
-            gaps: [rows.gaps().fold(f64::INFINITY, f64::min), rows.gaps().fold(f64::NEG_INFINITY, f64::max)],
-            overlapping: rows.gaps().filter(|gap| *gap < 0.0).count(),
-            bodies: self.scene.bodies().enumerate().map(of_body).collect(),
+            contact_nodes: gaps().count(),
+            gaps: [gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max)],
+            overlapping: gaps().filter(|gap| *gap < 0.0).count(),
+            bodies: self.scene.bodies.iter().enumerate().map(of_body).collect(),
         }
     }
 }

@@ -3,14 +3,15 @@
 use crate::body::Body;
 use crate::body::elasticity::{Formulation, Material};
 use crate::body::loads::nodal_forces;
-use crate::body::mesh::{BlockFace, Mesh, block, smallest_extent};
+use crate::body::mesh::{CellFace, Mesh, smallest_extent};
 use crate::equilibrium::cell_shapes::CellShapes;
+use crate::equilibrium::contact_part::ContactPart;
 use crate::equilibrium::modes::{Frame, RigidScene};
-use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows};
+use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows};
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
-use crate::scene::{Blocks, Geometry, Scene, UpperBody};
-use crate::shape::{AdmissibleSet, HeightShape, ShapeMap, ShapeScene, Velocities, height_map};
+use crate::scene::{Geometry, Scene};
+use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap, ShapeScene, Velocities, height_map};
 use std::sync::Arc;
 
 /// Poisson's ratio from which standard cells are nearly incompressible: total FETI takes hundreds of products.
@@ -18,29 +19,24 @@ const LOCKING: f64 = 0.499;
 /// Area of a contact face, over the square of the smallest extent of the body, that is rounding.
 const SMALLEST_AREA: f64 = 1e-9;
 
-/// Positions of the nodes of all bodies, lower first, mm.
-pub type Positions = Vec<Arc<Vec<[f64; 3]>>>;
-
 /// The discrete problem behind a scene.
 #[derive(Debug)]
 pub struct ContactProblem {
     /// The scene that was discretised.
     pub scene: Scene,
-    /// The bodies, lower first.
+    /// The bodies, in the order of the scene.
     pub bodies: Arc<[Body]>,
     /// The nodes that can come into contact.
     pub boundary: ContactBoundary,
     /// What the contact rows of a shape are computed from.
     pub geometry: ContactGeometry,
-    /// From controls to positions of the nodes of the lower body.
+    /// From controls to positions of the nodes of all bodies.
     pub map: Arc<ShapeMap>,
     /// The set of controls that the scene admits.
     pub admissible: AdmissibleSet,
-    shapes: CellShapes,
+    shapes: Vec<CellShapes>,
     /// The contact rows at the start.
     start_rows: ContactRows,
-    /// Positions of the upper body, where there is one.
-    fixed: Option<Arc<Vec<[f64; 3]>>>,
 }
 
 impl ContactProblem {
@@ -50,19 +46,24 @@ impl ContactProblem {
     /// [`SceneError`] naming the field.
     pub fn new(scene: Scene) -> Result<Self, SceneError> {
         scene.validate()?;
-        let (bodies, partners) = bodies(&scene)?;
-        let faces = find_face("contact.face", &scene.contact.face, &bodies[0].mesh)?.to_vec();
-        SceneError::require(!faces.is_empty(), "contact.face", &scene.contact.face, "a face with at least one facet")?;
-        let partner = |node: u32| partners.as_ref().map(|shift| node - shift);
-        let (map, admissible) = shape(&scene, &bodies[0])?;
-        let boundary = ContactBoundary::new(&scene.contact, &bodies, &faces, partner)?;
-        let start = map.positions(&scene.shape.start());
-        let shapes = CellShapes::new(&bodies[0].mesh, &start, &faces);
-        let geometry = ContactGeometry::new(faces, scene.counter_surface.clone(), &scene.contact);
-        let fixed = bodies.get(1).map(|upper| Arc::new(upper.mesh.nodes().to_vec()));
-        let start_rows = ContactRows { nodes: Vec::new() };
-        let (bodies, map) = (Arc::from(bodies), Arc::new(map));
-        let mut problem = Self { scene, bodies, boundary, geometry, map, admissible, shapes, start_rows, fixed };
+        let bodies = bodies(&scene)?;
+        let maps = maps(&scene, &bodies)?;
+        let meshes: Vec<&Mesh> = bodies.iter().map(|body| &*body.mesh).collect();
+        let admissible = AdmissibleSet::new(&scene, &meshes, &maps)?;
+        let map = ShapeMap::new(maps);
+        let start = map.positions(&scene.start());
+        check_start(&scene, &bodies, &start)?;
+        let part = |index: usize| ContactPart::new((&scene, index), &bodies, &map, &start);
+        let parts = (0..scene.contacts.len()).map(part).collect::<Result<Vec<_>, SceneError>>()?;
+        let boundary = ContactBoundary::new(&scene, &bodies, &parts)?;
+        let shapes = bodies.iter().zip(&start).enumerate().map(|(number, (body, positions))| {
+            let own = parts.iter().filter(|part| part.slave == number).flat_map(|part| part.faces.iter().copied());
+            CellShapes::new(&body.mesh, positions, &own.collect::<Vec<_>>())
+        });
+        let shapes = shapes.collect();
+        let start_rows = ContactRows { nodes: Vec::new(), pairs: Vec::new(), contact_count: 0 };
+        let (bodies, map, geometry) = (Arc::from(bodies), Arc::new(map), ContactGeometry { parts });
+        let mut problem = Self { scene, bodies, boundary, geometry, map, admissible, shapes, start_rows };
         problem.leave_out_held_nodes()?;
         Ok(problem)
     }
@@ -76,37 +77,42 @@ impl ContactProblem {
                 "a surface with a normal at every contact node; contact.normal = \"x3\" asks for none",
             )
         };
-        let rows = self.rows(&self.start_positions()).map_err(refused)?;
+        let start = self.start_positions();
+        let rows = self.rows(&start).map_err(refused)?;
         self.boundary.retain(|index| !rows.nodes[index].is_held());
-        self.start_rows = ContactRows { nodes: rows.nodes.into_iter().filter(|node| !node.is_held()).collect() };
+        self.start_rows = self.rows(&start).map_err(refused)?;
         self.refuse_imposed_slip()?;
-        let area: f64 = self.start_rows.areas().iter().sum();
-        let extent = smallest_extent(&self.start_positions()[0]);
-        let valid = self.start_rows.nodes.is_empty() || area > SMALLEST_AREA * extent * extent;
-        let allowed = "\"surface\" for a face that x3 runs along, whose projection has no area";
-        SceneError::require(valid, "contact.area", "projected", allowed)?;
-        let allowed = "a face with nodes that supports do not hold along their normals";
-        SceneError::require(!self.boundary.points.is_empty(), "contact.face", &self.scene.contact.face, allowed)
+        for (index, contact) in self.scene.contacts.iter().enumerate() {
+            let nodes = &self.start_rows.nodes[self.boundary.of_contact(index)];
+            let area: f64 = nodes.iter().map(|node| node.area).sum();
+            let extent = smallest_extent(&start[contact.slave.body]);
+            let field = self.scene.contact_field(index);
+            let allowed = "\"surface\" for a face that x3 runs along, whose projection has no area";
+            let valid = nodes.is_empty() || area > SMALLEST_AREA * extent * extent;
+            SceneError::require(valid, format!("{field}.area"), "projected", allowed)?;
+            let allowed = "a face with nodes that supports do not hold along their normals";
+            SceneError::require(!nodes.is_empty(), format!("{field}.face"), &contact.slave.face, allowed)?;
+        }
+        Ok(())
     }
 
     /// Refuses supports that move a contact node with friction along the counter surface: its friction force along
     /// held directions would be no unknown, but take its share of the friction cone.
     fn refuse_imposed_slip(&self) -> Result<(), SceneError> {
-        let slides = |point: &&ContactPoint| point.friction > 0.0 && point.imposed != [0.0; 3];
-        let Some(point) = self.boundary.points.iter().find(slides) else { return Ok(()) };
-        let place = self.bodies[0].mesh.nodes()[point.node as usize];
+        let mut nodes = self.boundary.points.iter().zip(&self.start_rows.nodes);
+        let slides = |(point, node): &(&ContactPoint, &NodeRows)| {
+            point.friction > 0.0 && point.imposed(&node.weights) != [0.0; 3]
+        };
+        let Some((point, _)) = nodes.find(slides) else { return Ok(()) };
+        let place = self.bodies[point.body].mesh.nodes()[point.node as usize];
         let value = format!("{} at the contact node at {place:?}, which a support moves", point.friction);
         let allowed = "0 there, or supports with prescribed displacements that do not reach the contact face";
         Err(SceneError::out_of_range("contact friction", value, allowed))
     }
 
-    fn all_positions(&self, lower: Vec<[f64; 3]>) -> Positions {
-        std::iter::once(Arc::new(lower)).chain(self.fixed.clone()).collect()
-    }
-
-    /// Number of entries of the displacements of all bodies: three per node, lower body first.
+    /// Number of entries of the displacements of all bodies: three per node, in the order of the scene.
     pub fn displacement_count(&self) -> usize {
-        3 * self.bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>()
+        3 * self.map.node_count()
     }
 
     /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and, where J depends on it, ∂J/∂u over all bodies.
@@ -149,13 +155,13 @@ impl ContactProblem {
         if ratio >= LOCKING {
             return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
         }
-        let aspect = self.shapes.extreme_aspect()?;
+        let aspect = self.shapes.iter().filter_map(CellShapes::extreme_aspect).reduce(f64::max)?;
         Some(format!("cells have edges 1 : {aspect:.0}"))
     }
 
     /// The proportions of cells that are plates on the contact face or rods across it, where they are extreme.
     pub(crate) fn flat_or_tall(&self) -> Option<f64> {
-        self.shapes.flat_or_tall()
+        self.shapes.iter().filter_map(CellShapes::flat_or_tall).reduce(f64::max)
     }
 
     /// Positions of all nodes of a shape.
@@ -163,28 +169,36 @@ impl ContactProblem {
     /// # Errors
     /// [`ContactError::InvertedElement`].
     pub fn positions(&self, controls: &[f64]) -> Result<Positions, ContactError> {
-        let positions = self.all_positions(self.map.positions(controls));
-        check_cells(&self.bodies[0], &positions[0])?;
+        let positions = self.map.positions(controls);
+        self.map.shaped_bodies().try_for_each(|body| check_cells(&self.bodies[body], &positions[body]))?;
         Ok(positions)
     }
 
     /// Positions of all nodes at the start of the scene.
     pub fn start_positions(&self) -> Positions {
-        self.all_positions(self.map.positions(&self.scene.shape.start()))
+        self.map.positions(&self.scene.start())
     }
 
     /// The contact rows of a shape.
     ///
     /// # Errors
-    /// [`ContactError::NoFoot`].
+    /// [`ContactError::NoFoot`], [`ContactError::LeftMaster`].
     pub fn rows(&self, positions: &Positions) -> Result<ContactRows, ContactError> {
-        let positions: Vec<&[[f64; 3]]> = positions.iter().map(|positions| positions.as_slice()).collect();
-        self.geometry.rows(&self.boundary, &self.bodies, &positions)
+        self.geometry.rows(&self.boundary, &self.bodies, positions)
     }
 
-    /// The facets of the contact surface.
+    /// The slave facets of all contacts whose sides may part.
     pub fn contact_facets(&self) -> ContactFacets {
-        ContactFacets::new(&self.bodies[0], &self.geometry.faces, &self.boundary)
+        let parts = self.boundary.contacts().map(|contact| (contact, &self.geometry.parts[contact]));
+        let parts = parts.filter(|(_, part)| !part.is_tied);
+        let facets = parts.map(|(contact, part)| (contact, part.slave, part.slave_facets(&self.bodies[part.slave])));
+        ContactFacets::new(facets, &self.boundary)
+    }
+
+    /// Per contact between bodies, the number of nodes of the slave face that carry no force at the start, since too
+    /// little of the master lies opposite to them.
+    pub fn uncovered_nodes(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.geometry.parts.iter().map(|part| part.uncovered).enumerate().filter(|(_, count)| *count > 0)
     }
 
     /// The contact rows at the start of the scene.
@@ -199,22 +213,39 @@ impl ContactProblem {
 
     /// Whether areas of contact nodes change with the shape.
     pub fn areas_change(&self) -> bool {
-        !self.geometry.areas_are_projected() || self.map.moves_along(0) || self.map.moves_along(1)
+        self.geometry.areas_change()
     }
 
     /// The changes of the areas of all contact nodes along one field of velocities.
-    pub(crate) fn area_changes(&self, lower: &[[f64; 3]], velocities: &Velocities<'_>, column: usize) -> Vec<f64> {
-        self.geometry.area_changes(&self.boundary, &self.bodies[0], lower, velocities, column)
+    pub(crate) fn area_changes(
+        &self,
+        rows: &ContactRows,
+        positions: &Positions,
+        velocities: &Velocities<'_>,
+        column: usize,
+    ) -> Vec<f64> {
+        self.geometry.area_changes((&self.boundary, rows), &self.bodies, positions, velocities, column)
     }
 
-    /// The sensitivities of the positions of the nodes of the lower body from those of the areas of all contact nodes.
-    pub(crate) fn pull_back_areas(&self, lower: &[[f64; 3]], areas: &[f64]) -> Vec<[f64; 3]> {
-        let mut positions = vec![[0.0; 3]; lower.len()];
-        if self.areas_change() {
-            let moves = |node| self.map.moves(node);
-            self.geometry.pull_back_areas(&self.boundary, &self.bodies[0], lower, areas, moves, &mut positions);
-        }
-        positions
+    /// The sensitivities of the positions of all nodes from those of the areas of all contact nodes.
+    pub(crate) fn pull_back_areas(&self, rows: &ContactRows, positions: &Positions, areas: &[f64]) -> Vec<[f64; 3]> {
+        let mut result = self.no_sensitivities();
+        let moves = |body: usize, node: u32| self.map.moves(body, node);
+        let rows = (&self.boundary, rows);
+        self.geometry.pull_back_areas(rows, &self.bodies, positions, areas, moves, |body, node, sensitivity| {
+            add_at(&mut result, self.node_number(body, node), sensitivity);
+        });
+        result
+    }
+
+    /// The number of a node of a body among those of all bodies.
+    pub fn node_number(&self, body: usize, node: u32) -> usize {
+        self.map.nodes(body).start + node as usize
+    }
+
+    /// Sensitivities of zero of the positions of all nodes.
+    pub(crate) fn no_sensitivities(&self) -> Vec<[f64; 3]> {
+        vec![[0.0; 3]; self.map.node_count()]
     }
 
     /// The bodies as a rigid body analysis takes them.
@@ -228,14 +259,19 @@ impl ContactProblem {
             let forces = nodal_forces(body, positions).into_iter();
             loads.extend(forces.map(|(node, force)| (number, positions[node as usize], force)));
         }
-        let row = |point: &ContactPoint, direction: &[f64; 3]| {
-            let side = |side: &crate::equilibrium::Side| {
-                (side.body, positions[side.body][side.node as usize], direction.map(|d| side.weight * d))
+        let row = |(point, node): (&ContactPoint, &NodeRows), direction: &[f64; 3]| {
+            let sides = point.sides.iter().zip(&node.weights).filter(|(_, weight)| **weight != 0.0);
+            let part = |(side, weight): (&crate::equilibrium::Side, &f64)| {
+                (side.body, positions[side.body][side.node as usize], direction.map(|d| weight * d))
             };
-            point.sides.iter().map(side).collect()
+            sides.map(part).collect()
         };
         let contact = self.boundary.points.iter().zip(&rows.nodes);
-        let contact = contact.map(|(point, node)| node.directions.iter().map(|d| row(point, d)).collect());
+        let rows = |pair: (&ContactPoint, &NodeRows)| -> Vec<Vec<crate::equilibrium::modes::RowPart>> {
+            let directions = pair.1.directions.iter().filter(|_| pair.1.is_covered);
+            directions.map(|d| row(pair, d)).collect()
+        };
+        let contact = contact.map(rows);
         let contact = contact.collect();
         let frame = |(number, positions): (usize, &Arc<Vec<[f64; 3]>>)| {
             let own = held.iter().filter(|(holder, ..)| *holder == number).map(|(_, point, _)| *point);
@@ -262,7 +298,8 @@ impl ContactProblem {
         let forces = bodies.flat_map(|(body, positions)| nodal_forces(body, &positions));
         let loads: f64 = forces.map(|(_, [x, y, z])| (x * x + y * y + z * z).sqrt()).sum();
         let modulus = self.materials().map(Material::young_modulus).fold(0.0, f64::max);
-        let moved = self.largest_prescribed() + self.scene.contact.interference.max(0.0);
+        let interference = self.scene.contacts.iter().map(|contact| contact.interference).fold(0.0, f64::max);
+        let moved = self.largest_prescribed() + interference;
         loads + modulus * moved * self.contact_area().sqrt()
     }
 }
@@ -278,62 +315,53 @@ fn check_cells(body: &Body, positions: &[[f64; 3]]) -> Result<(), ContactError> 
     Ok(())
 }
 
-/// The bodies of a scene, and by how much numbers of contact nodes of the lower body exceed those of their partners.
-fn bodies(scene: &Scene) -> Result<(Vec<Body>, Option<u32>), SceneError> {
-    match &scene.geometry {
-        Geometry::Blocks(blocks) => block_bodies(scene, blocks),
-        Geometry::Mesh(geometry) => {
-            let mesh = Arc::clone(&geometry.mesh);
-            let contact = find_face("contact.face", &scene.contact.face, &mesh)?.to_vec();
-            let body = Body::new("body", &scene.lower, mesh, &contact, geometry.piece_count())?;
-            let inverted =
-                |error: ContactError| SceneError::out_of_range("body.mesh", error, "cells of positive volume");
-            check_cells(&body, body.mesh.nodes()).map_err(inverted)?;
-            Ok((vec![body], None))
+/// The bodies of a scene.
+fn bodies(scene: &Scene) -> Result<Vec<Body>, SceneError> {
+    let body = |(number, body): (usize, &crate::scene::BodyScene)| {
+        let (mesh, pieces) = body.mesh()?;
+        let mut contact: Vec<CellFace> = Vec::new();
+        for (index, own) in scene.contacts.iter().enumerate() {
+            let faces = std::iter::once(("slave", &own.slave)).chain(own.master_face().map(|face| ("master", face)));
+            for (side, face) in faces.filter(|(_, face)| face.body == number) {
+                let part = if own.master_face().is_some() { side } else { "face" };
+                let field = format!("{}.{part}", scene.contact_field(index));
+                contact.extend(find_face(&field, &face.face, &mesh)?);
+            }
         }
-    }
-}
-
-fn block_bodies(scene: &Scene, blocks: &Blocks) -> Result<(Vec<Body>, Option<u32>), SceneError> {
-    let grid = blocks.grid();
-    let body = |name: &str, body, mesh: Mesh, contact: &str| {
-        let contact = find_face("contact.face", contact, &mesh)?.to_vec();
-        Body::new(name, body, Arc::new(mesh), &contact, 1)
+        Body::new(body, mesh, &contact, pieces)
     };
-    let height = scene.heights().map_or(1.0, |heights| heights.start_height);
-    let (floor, top) = (vec![0.0; grid.column_count()], vec![height; grid.column_count()]);
-    let mesh = block(&grid, blocks.subdomains, &floor, &top)?;
-    let mut bodies = vec![body("lower", &scene.lower, mesh, &scene.contact.face)?];
-    let Some(UpperBody { body: upper, top }) = &scene.upper else { return Ok((bodies, None)) };
-    let counter: Vec<f64> = grid.places().map(|[x1, x2]| scene.counter_surface.height(x1, x2)).collect();
-    let mesh = block(&grid, blocks.subdomains, &counter, &vec![*top; grid.column_count()])?;
-    bodies.push(body("upper", upper, mesh, BlockFace::Bottom.name())?);
-    // Node (i, j, n₃) of the lower block meets node (i, j, 0) of the upper one.
-    Ok((bodies, Some(grid.cells[2] as u32)))
+    scene.bodies.iter().enumerate().map(body).collect()
 }
 
-/// The map and the set of the controls.
-fn shape(scene: &Scene, lower: &Body) -> Result<(ShapeMap, AdmissibleSet), SceneError> {
-    match &scene.shape {
-        ShapeScene::Heights(heights) => {
-            let blocks = scene.blocks().ok_or_else(|| {
-                SceneError::out_of_range("surface", "a height surface of a mesh", "a lattice for meshes")
-            })?;
-            heights_of(scene, heights, blocks)
+/// The maps of the bodies.
+fn maps(scene: &Scene, bodies: &[Body]) -> Result<Vec<BodyMap>, SceneError> {
+    let map = |(scene, body): (&crate::scene::BodyScene, &Body)| match (&scene.shape, &scene.geometry) {
+        (None, _) => Ok(BodyMap { base: body.mesh.nodes().to_vec(), controls: 0, rows: Vec::new() }),
+        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(body),
+        (Some(ShapeScene::Heights(heights)), Geometry::Block(block)) => {
+            Ok(height_map(&heights.surface()?, block, heights.face))
         }
-        ShapeScene::Lattice(lattice) => {
-            let map = lattice.map(lower)?;
-            let admissible = AdmissibleSet::of_lattice(lattice, &map, &lower.mesh)?;
-            Ok((map, admissible))
+        (Some(ShapeScene::Heights(_)), Geometry::Mesh(_)) => {
+            let allowed = "a lattice: a height surface shapes blocks only";
+            Err(SceneError::out_of_range("surface", "a height surface of a mesh", allowed))
+        }
+    };
+    scene.bodies.iter().zip(bodies).map(map).collect()
+}
+
+/// Refuses meshes with inverted cells.
+fn check_start(scene: &Scene, bodies: &[Body], start: &Positions) -> Result<(), SceneError> {
+    for ((scene, body), positions) in scene.bodies.iter().zip(bodies).zip(start) {
+        if let Geometry::Mesh(_) = scene.geometry {
+            let field = format!("{}.mesh", scene.name);
+            check_cells(body, positions)
+                .map_err(|error| SceneError::out_of_range(field, error, "cells of positive volume"))?;
         }
     }
+    Ok(())
 }
 
-fn heights_of(scene: &Scene, heights: &HeightShape, blocks: &Blocks) -> Result<(ShapeMap, AdmissibleSet), SceneError> {
-    let (grid, surface) = (blocks.grid(), heights.surface()?);
-    let counter = &scene.counter_surface;
-    let height = |[x1, x2]: [f64; 2]| if counter.has_heights() { counter.height(x1, x2) } else { f64::INFINITY };
-    let ceiling: Vec<f64> = surface.places(blocks.size).map(height).collect();
-    let admissible = AdmissibleSet::new(&surface, &grid, &heights.bounds, ceiling)?;
-    Ok((height_map(&surface, &grid), admissible))
+/// Adds a vector to an entry.
+pub(crate) fn add_at(vectors: &mut [[f64; 3]], index: usize, vector: [f64; 3]) {
+    (0..3).for_each(|axis| vectors[index][axis] += vector[axis]);
 }

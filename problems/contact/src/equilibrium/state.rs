@@ -176,6 +176,8 @@ pub struct ContactForces {
     pub opening: Vec<f64>,
     /// Tangential jump per node along the axes, mm; empty without friction.
     pub slip: Vec<[f64; 3]>,
+    /// Forces on the nodes that are glued to a master, along the axes, N, as they act on the master.
+    pub ties: Vec<[f64; 3]>,
     /// Contact status per contact node.
     pub status: Vec<ContactStatus>,
     /// Residuals that certify the equilibrium.
@@ -195,17 +197,23 @@ impl ContactForces {
         residuals: Residuals,
         kink: Kink,
     ) -> Self {
-        let normal = boundary.points.iter().map(|point| forces[point.start]).collect();
-        let opening = boundary.points.iter().map(|point| jumps[point.start]).collect();
-        let vectors = |values: &[f64]| -> Vec<[f64; 3]> {
-            let points = if boundary.has_friction() { &boundary.points[..] } else { &[] };
+        let contact = boundary.contact_points();
+        let normal = contact.iter().map(|point| forces[point.start]).collect();
+        let opening = contact.iter().map(|point| jumps[point.start]).collect();
+        let vectors = |points: &[ContactPoint], nodes: &[NodeRows], values: &[f64], first: usize| -> Vec<[f64; 3]> {
             let vector = |(point, node): (&ContactPoint, &NodeRows)| {
-                let parts = || node.directions[1..].iter().zip(&values[point.start + 1..]);
+                let parts = || node.directions[first..].iter().zip(&values[point.start + first..]);
                 std::array::from_fn(|axis| parts().map(|(tangent, value)| tangent[axis] * value).sum())
             };
-            points.iter().zip(&rows.nodes).map(vector).collect()
+            points.iter().zip(nodes).map(vector).collect()
         };
-        Self { normal, tangential: vectors(forces), opening, slip: vectors(jumps), status, residuals, kink }
+        let sliding = if boundary.has_friction() { contact } else { &[] };
+        let [tangential, slip] = [forces, jumps].map(|values| vectors(sliding, &rows.nodes, values, 1));
+        let (tied, tied_rows) = (&boundary.points[contact.len()..], &rows.nodes[contact.len()..]);
+        let ties = vectors(tied, tied_rows, forces, 0);
+        let mut status = status;
+        status.truncate(contact.len());
+        Self { normal, tangential, opening, slip, ties, status, residuals, kink }
     }
 
     /// Total normal force Σλ_N, N.

@@ -5,24 +5,28 @@ use crate::equilibrium::{ContactFacets, ContactForces, ContactProblem, ContactRo
 /// Fields on the contact boundary, one entry per contact node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactFields {
-    /// The contact nodes in the mesh of the lower body, ascending.
+    /// The slave body of every contact node.
+    pub bodies: Vec<usize>,
+    /// The contact nodes in the meshes of their bodies.
     pub nodes: Vec<u32>,
-    /// The facets of the contact surface.
+    /// The contact of every node, by its place in the scene.
+    pub contacts: Vec<usize>,
+    /// The facets of the contact surfaces.
     pub facets: ContactFacets,
-    /// Undeformed position on the lower body, mm.
+    /// Undeformed position, mm.
     pub position: Vec<[f64; 3]>,
-    /// Displacement of the lower body there, mm.
+    /// Displacement of the slave body there, mm.
     pub displacement: Vec<[f64; 3]>,
-    /// Unit normal from the lower body outwards.
+    /// Unit normal from the slave body outwards.
     pub normal: Vec<[f64; 3]>,
     /// Tributary area A, mm².
     pub area: Vec<f64>,
     /// Pressure λ_N/A, MPa; compression positive.
     pub pressure: Vec<f64>,
-    /// Tangential traction λ_T/A along the axes, MPa: what the lower body exerts on the upper one or the obstacle. None
+    /// Tangential traction λ_T/A along the axes, MPa: what the slave body exerts on the master or the obstacle. None
     /// without friction.
     pub traction: Option<Vec<[f64; 3]>>,
-    /// Tangential jump along the axes, displacement of the lower body less that of the upper one, mm. None without
+    /// Tangential jump along the axes, displacement of the slave body less that of the master, mm. None without
     /// friction.
     pub slip: Option<Vec<[f64; 3]>>,
     /// Open, stick or slip.
@@ -38,39 +42,44 @@ pub struct ContactFields {
 }
 
 impl ContactFields {
-    /// From the lower body and the contact forces of a solved shape, without sensitivities.
+    /// From the bodies and the contact forces of a solved shape, without sensitivities.
     pub(crate) fn new(
         problem: &ContactProblem,
-        lower: &SolvedBody,
+        solved: &[SolvedBody],
         (rows, forces): (&ContactRows, &ContactForces),
     ) -> Self {
-        let nodes: Vec<u32> = problem.boundary.points.iter().map(|point| point.node).collect();
+        let points = || problem.boundary.contact_points().iter();
         let friction = problem.boundary.has_friction();
         let tractions = || {
             let pairs = forces.tangential.iter().zip(&rows.nodes);
             pairs.map(|(force, node)| force.map(|force| force / node.area)).collect()
         };
         Self {
-            position: nodes.iter().map(|&node| lower.positions[node as usize]).collect(),
-            displacement: nodes.iter().map(|&node| lower.displacement[node as usize]).collect(),
-            nodes,
+            position: points().map(|point| solved[point.body].positions[point.node as usize]).collect(),
+            displacement: points().map(|point| solved[point.body].displacement[point.node as usize]).collect(),
+            bodies: points().map(|point| point.body).collect(),
+            nodes: points().map(|point| point.node).collect(),
+            contacts: points().map(|point| point.contact).collect(),
             facets: problem.contact_facets(),
-            normal: rows.nodes.iter().map(|node| node.normal).collect(),
+            normal: rows.contact_nodes().iter().map(|node| node.normal).collect(),
             area: rows.areas(),
             pressure: rows.pressures(&forces.normal),
             traction: friction.then(tractions),
             slip: friction.then(|| forces.slip.clone()),
             status: forces.status.clone(),
-            gap: rows.gaps().collect(),
+            gap: rows.contact_nodes().iter().map(|node| node.gap).collect(),
             remaining_gap: forces.opening.iter().map(|opening| -opening).collect(),
             sensitivity: None,
         }
     }
 
-    /// Lets the fields hold the sensitivities of a function of the positions of all nodes.
-    pub fn set_sensitivity(&mut self, positions: &[[f64; 3]]) {
-        let along =
-            |(&node, normal): (&u32, &[f64; 3])| (0..3).map(|axis| normal[axis] * positions[node as usize][axis]).sum();
-        self.sensitivity = Some(self.nodes.iter().zip(&self.normal).map(along).collect());
+    /// Lets the fields hold the sensitivities of a function of the positions of the nodes of all bodies, in the order
+    /// of the scene.
+    pub fn set_sensitivity(&mut self, problem: &ContactProblem, positions: &[[f64; 3]]) {
+        let along = |((&body, &node), normal): ((&usize, &u32), &[f64; 3])| {
+            let own = positions[problem.node_number(body, node)];
+            (0..3).map(|axis| normal[axis] * own[axis]).sum()
+        };
+        self.sensitivity = Some(self.bodies.iter().zip(&self.nodes).zip(&self.normal).map(along).collect());
     }
 }

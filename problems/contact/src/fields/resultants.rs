@@ -16,7 +16,7 @@ use serde::Serialize;
 /// Forces on all bodies, and the largest stress in them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Resultants {
-    /// The bodies, lower first.
+    /// The bodies, in the order of the scene.
     pub bodies: Vec<BodyResultants>,
     /// The largest stress; none where no body is known to this process.
     pub largest_stress: Option<LargestStress>,
@@ -47,7 +47,7 @@ pub struct SupportReaction {
 /// The largest von Mises stress over the integration points of all cells.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LargestStress {
-    /// Number of the body, lower first.
+    /// Number of the body.
     pub body: usize,
     /// Number of the cell in its mesh.
     pub cell: usize,
@@ -68,7 +68,7 @@ impl BodyResultants {
 }
 
 impl Resultants {
-    /// The forces on solved bodies (lower first) with their contact rows and contact forces.
+    /// The forces on solved bodies with their contact rows and contact forces.
     pub fn new(problem: &ContactProblem, bodies: &[SolvedBody], contact: (&ContactRows, &ContactForces)) -> Self {
         let of_body = |(number, solved): (usize, &SolvedBody)| of_body(problem, number, solved, contact);
         let largest_stress = LargestStress::of(problem, bodies);
@@ -77,7 +77,7 @@ impl Resultants {
 }
 
 impl LargestStress {
-    /// The largest stress in solved bodies, lower first; none without bodies.
+    /// The largest stress in solved bodies; none without bodies.
     pub fn of(problem: &ContactProblem, bodies: &[SolvedBody]) -> Option<Self> {
         let of_body = |(number, (solved, body)): (usize, (&SolvedBody, &Body))| {
             let of_cell = |cell: usize| {
@@ -118,7 +118,7 @@ fn of_body(
             add(&mut rest[end as usize], 0.5, tied);
         }
     }
-    let supports = problem.scene.bodies().nth(number).map(|(_, scene)| scene.supports.as_slice()).unwrap_or_default();
+    let supports = &problem.scene.bodies[number].supports;
     let reaction = |face: &String| SupportReaction { face: face.clone(), force: [0.0; 3] };
     let mut supports: Vec<SupportReaction> = supports.iter().map(|support| reaction(&support.face)).collect();
     for node in body.held_nodes() {
@@ -155,9 +155,17 @@ fn contact_forces<'a>(
     let points = problem.boundary.points.iter().zip(&rows.nodes).enumerate();
     points.flat_map(move |(index, (point, node))| {
         let tangential = forces.tangential.get(index).copied().unwrap_or_default();
-        let force: [f64; 3] = std::array::from_fn(|axis| forces.normal[index] * node.normal[axis] + tangential[axis]);
-        let sides = point.sides.iter().filter(move |side| side.body == number);
-        sides.map(move |side| (side.node, force.map(|force| -side.weight * force)))
+        let force: [f64; 3] = match forces.normal.get(index) {
+            // Between bodies, what supports hold of a normal acts on neither side.
+            Some(normal) => {
+                let along = if point.sides.len() > 1 { node.directions[0] } else { node.normal };
+                std::array::from_fn(|axis| normal * along[axis] + tangential[axis])
+            }
+            None => forces.ties[index - forces.normal.len()],
+        };
+        let sides = point.sides.iter().zip(&node.weights);
+        let own = sides.filter(move |(side, weight)| side.body == number && **weight != 0.0);
+        own.map(move |(side, weight)| (side.node, force.map(|force| -weight * force)))
     })
 }
 

@@ -55,7 +55,7 @@ impl Bound {
     }
 
     fn new(limit: Limit, case: usize, problem: &ContactProblem) -> Result<Self, SceneError> {
-        let start = || volume(problem, &problem.scene.shape.start());
+        let start = || volume(problem, &problem.scene.start());
         let quantity = match &limit.quantity {
             LimitedQuantity::PeakPressure => Quantity::PeakPressure,
             &LimitedQuantity::LoadedArea { pressure } => {
@@ -138,8 +138,14 @@ impl Bound {
                 let [by_force, by_area] = outputs.pull_back(forces, areas, weights.as_slice());
                 let by_area: Vec<f64> = by_area.iter().map(|slope| 1.0 - slope).collect();
                 let mut dual = Vector::zeros(cases.dual_count(self.case));
-                problem.boundary.points.iter().zip(by_force).for_each(|(point, slope)| dual[point.start] = -slope);
-                let positions = problem.pull_back_areas(&problem.map.positions(control.as_slice()), &by_area);
+                problem
+                    .boundary
+                    .contact_points()
+                    .iter()
+                    .zip(by_force)
+                    .for_each(|(point, slope)| dual[point.start] = -slope);
+                let positions =
+                    problem.pull_back_areas(&state.rows, &problem.map.positions(control.as_slice()), &by_area);
                 let explicit = Vector::from_vec(problem.map.pull_back(&positions));
                 cases.gradient(self.case, states, &CostGradient { control: explicit, state: dual })?
             }

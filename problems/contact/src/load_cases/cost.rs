@@ -78,7 +78,7 @@ impl CasesCost {
             let valid = case.weight > 0.0 && case.weight.is_finite();
             SceneError::require(valid, "case.weight", case.weight, "a finite number > 0")?;
             let is_limited = peaks.iter().any(|limit: &PeakLimit| limit.part == index);
-            let part = Part::new((case.weight, cost), next, case.problem.boundary.points.len(), is_limited);
+            let part = Part::new((case.weight, cost), next, case.problem.boundary.contact_points().len(), is_limited);
             next = part.own.end.max(part.pressures.end);
             parts.push(part);
         }
@@ -224,14 +224,28 @@ impl Part {
     }
 }
 
-/// √w R of the surface that the cases share, where its bending counts.
+/// √w R of the surfaces that the cases share, where their bending counts.
 fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
-    let scene = cases.first().map(|case| &case.problem.scene);
-    let known = scene.and_then(|scene| Some((scene.heights()?, scene.blocks()?)));
-    let Some((heights, blocks)) = known.filter(|(heights, _)| heights.fairness != 0.0) else { return Ok(None) };
-    let (weight, allowed) = (heights.fairness, "a finite number ≥ 0 (unit of the objective)");
-    SceneError::require(weight > 0.0 && weight.is_finite(), "surface.fairness.weight", weight, allowed)?;
-    Ok(Some(bending_rows(&heights.surface()?, blocks.size) * weight.sqrt()))
+    let Some(scene) = cases.first().map(|case| &case.problem.scene) else { return Ok(None) };
+    let (mut parts, mut first) = (Vec::new(), 0);
+    for body in &scene.bodies {
+        if let (Some(heights), Some(block)) = (body.heights().filter(|own| own.fairness != 0.0), body.block()) {
+            let (weight, allowed) = (heights.fairness, "a finite number ≥ 0 (unit of the objective)");
+            SceneError::require(weight > 0.0 && weight.is_finite(), "surface.fairness.weight", weight, allowed)?;
+            parts.push((first, bending_rows(&heights.surface()?, block.size) * weight.sqrt()));
+        }
+        first += body.control_count();
+    }
+    if parts.is_empty() {
+        return Ok(None);
+    }
+    let mut all = Matrix::zeros(parts.iter().map(|(_, rows)| rows.nrows()).sum(), first);
+    let mut row = 0;
+    for (column, rows) in &parts {
+        all.view_mut((row, *column), rows.shape()).copy_from(rows);
+        row += rows.nrows();
+    }
+    Ok(Some(all))
 }
 
 /// The costs of all cases; norms are roots in all cases if they have to be in one.

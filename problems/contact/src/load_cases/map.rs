@@ -1,7 +1,7 @@
 //! Controls ↦ the states of all cases, as one state problem of the framework.
 
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
-use crate::cost::{FieldCost, volume, volume_gradient};
+use crate::cost::{FieldCost, volume, volume_gradient, volume_slope};
 use crate::equilibrium::{ContactSolver, TangentsOf};
 use crate::load_cases::case::named;
 use crate::load_cases::threads::on_all;
@@ -184,7 +184,7 @@ impl<S: ContactSolver> LoadCases<S> {
         Ok(known)
     }
 
-    /// The derivative of Σ weights·outputs by the positions of the nodes of the lower body, at states already found.
+    /// The derivative of Σ weights·outputs by the positions of the nodes of all bodies, at states already found.
     ///
     /// # Errors
     /// As [`ContactShape::position_sensitivity`].
@@ -195,7 +195,7 @@ impl<S: ContactSolver> LoadCases<S> {
         weights: &Vector,
     ) -> Result<Vec<[f64; 3]>, OracleError> {
         let problem = self.cases[0].shape.problem();
-        let mut sum = vec![[0.0; 3]; problem.bodies[0].mesh.node_count()];
+        let mut sum = problem.no_sensitivities();
         let mut add = |positions: &[[f64; 3]], factor: f64| {
             let moved = sum.iter_mut().zip(positions);
             moved.for_each(|(sum, own)| (0..3).for_each(|axis| sum[axis] += factor * own[axis]));
@@ -221,8 +221,7 @@ impl<S: ContactSolver> LoadCases<S> {
             }
         }
         if self.with_volume {
-            let positions = problem.map.positions(control.as_slice());
-            add(&problem.bodies[0].mesh.volume_derivative(&positions), weights[first]);
+            add(&volume_slope(problem, control.as_slice()), weights[first]);
         }
         Ok(sum)
     }

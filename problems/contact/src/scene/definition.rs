@@ -1,140 +1,141 @@
 //! What a scene is made of, and what is allowed.
 
-use crate::body::mesh::{BlockFace, Grid, Mesh};
+use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
 use crate::names::find;
-use crate::scene::{BodyScene, ContactScene, CounterSurface, Held, LoadKind, NormalKind};
-use crate::shape::{HeightShape, ShapeBounds, ShapeScene};
+use crate::scene::{Block, BodyScene, ContactScene, CounterSurface, Geometry, Held, LoadKind, Master, NormalKind};
+use crate::shape::{HeightShape, ShapeBounds, ShapeScene, ShapedFace};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
-/// Where the meshes of the bodies come from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Geometry {
-    /// Blocks of bricks over one base.
-    Blocks(Blocks),
-    /// A mesh of the only body.
-    Mesh(MeshGeometry),
-}
-
-/// Blocks over one base: the lower one from 0 to the optimized surface, the upper one from the counter surface upwards.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Blocks {
-    /// Lengths a, b of the base, mm.
-    pub size: [f64; 2],
-    /// Bricks along x₁, x₂, x₃ of each body.
-    pub bricks: [usize; 3],
-    /// Subdomains along x₁, x₂, x₃ of each body.
-    pub subdomains: [usize; 3],
-}
-
-/// A mesh with the number of its pieces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MeshGeometry {
-    /// Nodes, cells and names; lengths in mm.
-    pub mesh: Arc<Mesh>,
-    /// Pieces that total FETI divides it into, about; none: by the number of cells.
-    pub pieces: Option<usize>,
-}
-
-/// An elastic body above the contact boundary.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct UpperBody {
-    /// Material, supports and loads of the body.
-    pub body: BodyScene,
-    /// Height of its flat top, mm.
-    pub top: f64,
-}
-
-/// A contact problem with an optimizable lower body.
+/// A contact problem: elastic bodies, what touches what, and what the controls move.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The name of the scene in reports.
     pub name: String,
-    /// The meshes of the bodies.
-    pub geometry: Geometry,
-    /// The body whose shape is optimized.
-    pub lower: BodyScene,
-    /// The elastic body above; none for a rigid obstacle.
-    pub upper: Option<UpperBody>,
-    /// The obstacle, or F², the lower surface of the upper body.
-    pub counter_surface: CounterSurface,
-    /// What touches, and how.
-    pub contact: ContactScene,
-    /// The controls of the shape.
-    pub shape: ShapeScene,
+    /// The bodies; at least one has controls.
+    pub bodies: Vec<BodyScene>,
+    /// What touches what, and how.
+    pub contacts: Vec<ContactScene>,
 }
 
-/// Cells of a piece, about, where the scene does not say how many pieces there are: larger ones take too long to
-/// factor, smaller ones make the coarse problem large.
-const CELLS_PER_PIECE: [usize; 2] = [512, 400];
-
-impl MeshGeometry {
-    /// Pieces, about.
-    pub fn piece_count(&self) -> usize {
-        let mesh = &self.mesh;
-        let second = mesh.cells().filter(|cell| cell.nodes.len() > 8).count();
-        let cells = if 2 * second > mesh.cell_count() { CELLS_PER_PIECE[1] } else { CELLS_PER_PIECE[0] };
-        self.pieces.unwrap_or_else(|| mesh.cell_count().div_ceil(cells))
-    }
-}
-
-impl Blocks {
-    /// The grid that both bodies share.
-    pub fn grid(&self) -> Grid {
-        Grid { cells: self.bricks, size: self.size }
-    }
+/// What lies opposite to a face of a block.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Opposite<'s> {
+    /// Heights over (x₁, x₂) that do not change.
+    Heights(&'s CounterSurface),
+    /// A height surface of another body.
+    Shaped(usize),
 }
 
 impl Scene {
-    /// The blocks of the scene, where its bodies are blocks.
-    pub fn blocks(&self) -> Option<&Blocks> {
-        match &self.geometry {
-            Geometry::Blocks(blocks) => Some(blocks),
-            Geometry::Mesh(_) => None,
+    /// The body whose shape the controls change and its block, where there is one such body and it is a block that a
+    /// height surface shapes.
+    pub fn shaped_block(&self) -> Option<(&Block, &HeightShape)> {
+        let mut shaped = self.bodies.iter().filter(|body| body.shape.is_some());
+        match (shaped.next(), shaped.next()) {
+            (Some(body), None) => Some((body.block()?, body.heights()?)),
+            _ => None,
         }
     }
 
-    /// The height surface that shapes the lower body, where a height surface does.
+    /// The height surface of the only body with controls, where it has one.
     pub fn heights(&self) -> Option<&HeightShape> {
-        match &self.shape {
-            ShapeScene::Heights(heights) => Some(heights),
-            ShapeScene::Lattice(_) => None,
-        }
+        self.shaped_block().map(|(_, heights)| heights)
     }
 
-    /// The scene with other bricks and subdomains of its blocks; a scene of a mesh stays as it is.
+    /// Whether all bodies are blocks.
+    pub fn is_of_blocks(&self) -> bool {
+        self.bodies.iter().all(|body| body.block().is_some())
+    }
+
+    /// The scene with changed blocks; bodies of meshes stay as they are.
     #[must_use]
-    pub fn with_bricks(mut self, bricks: [usize; 3], subdomains: [usize; 3]) -> Self {
-        if let Geometry::Blocks(blocks) = &mut self.geometry {
-            *blocks = Blocks { bricks, subdomains, ..*blocks };
+    pub fn with_blocks(mut self, change: impl Fn(&mut Block)) -> Self {
+        for body in &mut self.bodies {
+            if let Geometry::Block(block) = &mut body.geometry {
+                change(block);
+            }
         }
         self
     }
 
-    /// The scene with changed blocks; a scene of a mesh stays as it is.
+    /// The scene with other bricks and subdomains of all its blocks.
     #[must_use]
-    pub fn with_blocks(mut self, change: impl FnOnce(&mut Blocks)) -> Self {
-        if let Geometry::Blocks(blocks) = &mut self.geometry {
-            change(blocks);
+    pub fn with_bricks(self, bricks: [usize; 3], subdomains: [usize; 3]) -> Self {
+        self.with_blocks(|block| (block.bricks, block.subdomains) = (bricks, subdomains))
+    }
+
+    /// The scene with changed height surfaces; lattices stay as they are.
+    #[must_use]
+    pub fn with_heights(mut self, change: impl Fn(&mut HeightShape)) -> Self {
+        for body in &mut self.bodies {
+            if let Some(ShapeScene::Heights(heights)) = &mut body.shape {
+                change(heights);
+            }
         }
         self
     }
 
-    /// The scene with a changed height surface; a scene of a lattice stays as it is.
-    #[must_use]
-    pub fn with_heights(mut self, change: impl FnOnce(&mut HeightShape)) -> Self {
-        if let ShapeScene::Heights(heights) = &mut self.shape {
-            change(heights);
-        }
-        self
-    }
-
-    /// The scene with another friction coefficient.
+    /// The scene with another friction coefficient of all contacts that may slide.
     #[must_use]
     pub fn with_friction(mut self, friction: f64) -> Self {
-        self.contact.friction = friction;
+        self.contacts.iter_mut().filter(|contact| !contact.is_tied()).for_each(|contact| contact.friction = friction);
         self
+    }
+
+    /// The largest friction coefficient of the contacts, without those of regions.
+    pub fn friction(&self) -> f64 {
+        self.contacts.iter().map(|contact| contact.friction).fold(0.0, f64::max)
+    }
+
+    /// Whether any contact has friction.
+    pub fn has_friction(&self) -> bool {
+        self.contacts.iter().any(ContactScene::has_friction)
+    }
+
+    /// Number of controls.
+    pub fn control_count(&self) -> usize {
+        self.bodies.iter().map(BodyScene::control_count).sum()
+    }
+
+    /// The controls at the start, body by body: heights, or no displacement, mm.
+    pub fn start(&self) -> Vec<f64> {
+        self.bodies.iter().filter_map(|body| body.shape.as_ref()).flat_map(ShapeScene::start).collect()
+    }
+
+    /// What messages call a contact.
+    pub(crate) fn contact_field(&self, index: usize) -> String {
+        if self.contacts.len() == 1 { "contact".into() } else { format!("contact[{index}]") }
+    }
+
+    /// What messages call the obstacle of a contact.
+    pub(crate) fn obstacle_field(&self, index: usize) -> String {
+        if self.contacts.len() == 1 { "counter_surface".into() } else { format!("contact[{index}].obstacle") }
+    }
+
+    /// What lies opposite to a face of a body in a contact where sides may part; none where it has no heights.
+    pub(crate) fn opposite(&self, body: usize, face: ShapedFace) -> Option<Opposite<'_>> {
+        let is_own = |own: &crate::scene::BodyFace| own.body == body && own.face == face.block_face().name();
+        for contact in self.contacts.iter().filter(|contact| !contact.is_tied()) {
+            let other = match &contact.master {
+                Master::Obstacle(surface) if is_own(&contact.slave) => {
+                    return surface.has_heights().then_some(Opposite::Heights(surface));
+                }
+                Master::Body(master) if is_own(&contact.slave) => master,
+                Master::Body(master) if is_own(master) => &contact.slave,
+                _ => continue,
+            };
+            let block = self.bodies.get(other.body)?.block()?;
+            let shaped = self.bodies[other.body].heights().map(|heights| heights.face);
+            return [ShapedFace::Bottom, ShapedFace::Top].into_iter().find_map(|side| {
+                (other.face == side.block_face().name()).then(|| match side {
+                    _ if shaped == Some(side) => Opposite::Shaped(other.body),
+                    ShapedFace::Bottom => Opposite::Heights(&block.bottom),
+                    ShapedFace::Top => Opposite::Heights(&block.top),
+                })
+            });
+        }
+        None
     }
 
     /// Checks every field that needs no mesh.
@@ -142,116 +143,142 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn validate(&self) -> Result<(), SceneError> {
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        let coefficients = self.contact.friction_by_region.iter().map(|(_, friction)| *friction);
-        for friction in std::iter::once(self.contact.friction).chain(coefficients) {
-            let valid = friction == 0.0 || positive(friction);
-            SceneError::require(valid, "friction", friction, "a finite number ≥ 0")?;
+        SceneError::require(!self.bodies.is_empty(), "body", "none", "at least one body")?;
+        SceneError::require(!self.contacts.is_empty(), "contact", "none", "at least one contact")?;
+        SceneError::require(self.control_count() > 0, "body", "no controls", "a surface or a lattice of some body")?;
+        for (index, body) in self.bodies.iter().enumerate() {
+            let others = || self.bodies[..index].iter().map(|other| other.name.as_str());
+            let is_new = !body.name.is_empty() && others().all(|other| other != body.name);
+            let field = format!("body[{index}].name");
+            SceneError::require(is_new, field, format!("\"{}\"", body.name), "a name that no other body has")?;
         }
-        let interference = self.contact.interference;
-        SceneError::require(interference.is_finite(), "contact.interference", interference, "a finite number (mm)")?;
-        self.counter_surface.check("counter_surface")?;
-        self.validate_normals()?;
-        match (&self.geometry, &self.shape) {
-            (Geometry::Blocks(blocks), ShapeScene::Heights(heights)) => self.validate_blocks(blocks, heights)?,
-            (Geometry::Mesh(_), ShapeScene::Heights(_)) => {
-                let allowed = "a lattice: a height surface shapes blocks only";
-                return Err(SceneError::out_of_range("surface", "a height surface of a mesh", allowed));
-            }
-            (_, ShapeScene::Lattice(lattice)) => lattice.validate()?,
-        }
-        if self.upper.is_some() && self.blocks().is_none() {
-            let allowed = "none: a mesh touches a rigid obstacle";
-            return Err(SceneError::out_of_range("upper", "an upper body above a mesh", allowed));
-        }
-        if self.upper.is_some() && self.heights().is_none() {
-            let allowed = "none with a lattice: its nodes would leave those of the upper body";
-            return Err(SceneError::out_of_range("upper", "an upper body above a lattice", allowed));
-        }
-        Ok(())
+        (0..self.contacts.len()).try_for_each(|index| self.validate_contact(index))?;
+        (0..self.bodies.len()).try_for_each(|index| self.validate_body(index))
     }
 
-    /// Checks that the counter surface has the normals that the scene asks for.
-    fn validate_normals(&self) -> Result<(), SceneError> {
-        let refused = |allowed: &str| Err(SceneError::out_of_range("contact.normal", "\"surface\"", allowed));
-        match self.contact.normal {
-            NormalKind::Surface if self.upper.is_some() => {
-                refused("\"x3\" between two bodies, whose nodes meet along x3")
+    fn validate_contact(&self, index: usize) -> Result<(), SceneError> {
+        let (contact, field) = (&self.contacts[index], self.contact_field(index));
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let coefficients = contact.friction_by_region.iter().map(|(_, friction)| *friction);
+        let name = if self.contacts.len() == 1 { "friction".into() } else { format!("{field}.friction") };
+        for friction in std::iter::once(contact.friction).chain(coefficients) {
+            SceneError::require(friction == 0.0 || positive(friction), &name, friction, "a finite number ≥ 0")?;
+        }
+        let interference = contact.interference;
+        let place = format!("{field}.interference");
+        SceneError::require(interference.is_finite(), place, interference, "a finite number (mm)")?;
+        let exists = |part: &str, own: &crate::scene::BodyFace| {
+            let allowed = format!("one of the {} bodies", self.bodies.len());
+            SceneError::require(own.body < self.bodies.len(), format!("{field}.{part}.body"), own.body, allowed)
+        };
+        exists("slave", &contact.slave)?;
+        if let Some(master) = contact.master_face() {
+            exists("master", master)?;
+            let allowed = "a face of another body: a body that touches itself cannot be solved, since large \
+                           displacements alone bring it there";
+            let value = format!("\"{}\"", self.bodies[master.body].name);
+            SceneError::require(master.body != contact.slave.body, format!("{field}.master.body"), value, allowed)?;
+        }
+        if contact.is_tied() {
+            let allowed = "no friction and no interference between glued faces";
+            let valid = contact.friction == 0.0 && contact.friction_by_region.is_empty() && interference == 0.0;
+            SceneError::require(valid, format!("{field}.tied"), true, allowed)?;
+        }
+        self.validate_normals(index)
+    }
+
+    /// Checks that the surfaces have the normals that a contact asks for.
+    fn validate_normals(&self, index: usize) -> Result<(), SceneError> {
+        let contact = &self.contacts[index];
+        let Some(surface) = contact.obstacle() else { return Ok(()) };
+        surface.check(&self.obstacle_field(index))?;
+        let refused = |value: &str, allowed: &str| {
+            Err(SceneError::out_of_range(format!("{}.normal", self.contact_field(index)), value, allowed))
+        };
+        match contact.normal {
+            NormalKind::Surface if matches!(surface, CounterSurface::Punch { .. }) => {
+                refused("\"surface\"", "\"x3\" with a punch, which has a step")
             }
-            NormalKind::Surface if matches!(self.counter_surface, CounterSurface::Punch { .. }) => {
-                refused("\"x3\" with a punch, which has a step")
-            }
-            NormalKind::X3 if !self.counter_surface.has_heights() => {
-                let allowed = "\"surface\" with a counter surface that is no height over x1 and x2";
-                Err(SceneError::out_of_range("contact.normal", "\"x3\"", allowed))
+            NormalKind::X3 if !surface.has_heights() => {
+                refused("\"x3\"", "\"surface\" with a counter surface that is no height over x1 and x2")
             }
             _ => Ok(()),
         }
     }
 
-    fn validate_blocks(&self, blocks: &Blocks, heights: &HeightShape) -> Result<(), SceneError> {
-        for (axis, (&mesh, &subdomains)) in blocks.bricks.iter().zip(&blocks.subdomains).enumerate() {
-            SceneError::require(
-                (1..=400).contains(&mesh),
-                format!("mesh.bricks[{axis}]"),
-                mesh,
-                "1 … 400 bricks per edge",
-            )?;
-            let divides = subdomains > 0 && mesh.is_multiple_of(subdomains);
-            let allowed = format!("a divisor of the {mesh} bricks per edge");
-            SceneError::require(divides, format!("mesh.subdomains[{axis}]"), subdomains, allowed)?;
+    fn validate_body(&self, index: usize) -> Result<(), SceneError> {
+        let body = &self.bodies[index];
+        if let Some(ShapeScene::Lattice(lattice)) = &body.shape {
+            lattice.validate()?;
         }
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        for (axis, &length) in blocks.size.iter().enumerate() {
-            SceneError::require(positive(length), format!("size[{axis}]"), length, "a finite length > 0 mm")?;
-        }
-        let height = heights.start_height;
-        SceneError::require(positive(height), "surface.start", height, "a finite mean height > 0 mm")?;
-        if self.counter_surface.has_heights() {
-            self.validate_heights(blocks, heights)?;
-        }
-        Self::validate_block("lower", &self.lower, BlockFace::Top)?;
-        if let Some(upper) = &self.upper {
-            Self::validate_block("upper", &upper.body, BlockFace::Bottom)?;
-        }
-        Ok(())
-    }
-
-    /// Checks that there is room between the bounds of the shape, the counter surface, and the top of the upper body.
-    fn validate_heights(&self, blocks: &Blocks, heights: &HeightShape) -> Result<(), SceneError> {
-        let place = |x1: f64, x2: f64| format!("counter_surface at ({x1}, {x2})");
-        let ShapeBounds { minimum_height, volume: [least, largest], .. } = heights.bounds;
-        for [x1, x2] in heights.surface()?.places(blocks.size) {
-            let height = self.counter_surface.height(x1, x2);
-            SceneError::require(height.is_finite(), place(x1, x2), height, "finite heights over the whole base")?;
-            let allowed = format!("at least admissible.minimum_height = {minimum_height} (mm)");
-            SceneError::require(height >= minimum_height, place(x1, x2), height, allowed)?;
-        }
-        let volume = format!("[{least}, {largest}]");
-        SceneError::require(
-            least <= largest,
-            "admissible.volume",
-            volume,
-            "the smallest volume, then the largest (mm³)",
-        )?;
-        for [x1, x2] in blocks.grid().places() {
-            let height = self.counter_surface.height(x1, x2);
-            SceneError::require(height.is_finite(), place(x1, x2), height, "finite heights over the whole base")?;
-            if let Some(UpperBody { top, .. }) = self.upper {
-                let allowed = format!("above the counter surface, which has the height {height} mm at ({x1}, {x2})");
-                SceneError::require(top > height, "upper.top", top, allowed)?;
+        match (&body.geometry, body.heights()) {
+            (Geometry::Mesh(_), Some(_)) => {
+                let allowed = "a lattice: a height surface shapes blocks only";
+                Err(SceneError::out_of_range("surface", "a height surface of a mesh", allowed))
+            }
+            (Geometry::Mesh(_), None) => Ok(()),
+            (Geometry::Block(block), heights) => {
+                block.validate(&body.name)?;
+                if let Some(heights) = heights {
+                    self.validate_heights(index, block, heights)?;
+                }
+                self.validate_block(index, block)
             }
         }
+    }
+
+    /// Checks that there is room between the bounds of a height surface and what lies opposite to it.
+    fn validate_heights(&self, index: usize, block: &Block, heights: &HeightShape) -> Result<(), SceneError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let height = heights.start_height;
+        SceneError::require(positive(height), "surface.start", height, "a finite mean height > 0 mm")?;
+        let ShapeBounds { minimum_height, volume: [least, largest], .. } = heights.bounds;
+        let volume = format!("[{least}, {largest}]");
+        let allowed = "the smallest volume, then the largest (mm³)";
+        SceneError::require(least <= largest, "admissible.volume", volume, allowed)?;
+        let Some(Opposite::Heights(surface)) = self.opposite(index, heights.face) else { return Ok(()) };
+        let place = |[x1, x2]: [f64; 2]| format!("counter_surface at ({x1}, {x2})");
+        let finite = "finite heights over the whole base";
+        for at in heights.surface()?.places(block.size).map(|at| block.grid().moved(at)) {
+            let height = surface.height(at[0], at[1]);
+            SceneError::require(height.is_finite(), place(at), height, finite)?;
+            if heights.face == ShapedFace::Top {
+                let least = block.bottom.height(at[0], at[1]) + minimum_height;
+                let allowed = format!("at least admissible.minimum_height = {minimum_height} (mm)");
+                SceneError::require(height >= least, place(at), height, allowed)?;
+            }
+        }
+        for at in block.grid().places() {
+            let height = surface.height(at[0], at[1]);
+            SceneError::require(height.is_finite(), place(at), height, finite)?;
+        }
         Ok(())
     }
 
-    /// Checks the supports and loads of a block, whose contact face takes none of them.
-    fn validate_block(name: &str, body: &BodyScene, contact: BlockFace) -> Result<(), SceneError> {
+    /// Checks the faces of a block, and its supports and loads: its contact faces take none of them.
+    fn validate_block(&self, index: usize, block: &Block) -> Result<(), SceneError> {
+        let body = &self.bodies[index];
+        let name = &body.name;
+        let start = |face: ShapedFace, surface: &CounterSurface, [x1, x2]: [f64; 2]| match body.heights() {
+            Some(heights) if heights.face == face => heights.start_height,
+            _ => surface.height(x1, x2),
+        };
+        for at @ [x1, x2] in block.grid().places() {
+            let bottom = start(ShapedFace::Bottom, &block.bottom, at);
+            let top = start(ShapedFace::Top, &block.top, at);
+            let place = || format!("{name}.bottom at ({x1}, {x2})");
+            SceneError::require(bottom.is_finite(), place(), bottom, "finite heights over the whole base")?;
+            let allowed = format!("above the bottom, which has the height {bottom} mm at ({x1}, {x2})");
+            SceneError::require(top > bottom, format!("{name}.top"), top, allowed)?;
+        }
+        let faces =
+            self.contacts.iter().flat_map(|contact| std::iter::once(&contact.slave).chain(contact.master_face()));
+        let contact: Vec<&str> = faces.filter(|face| face.body == index).map(|face| face.face.as_str()).collect();
         let check = |part: &str, index: usize, face: &str| {
             let field = format!("{name}.{part}[{index}].face");
             find(&field, face, BlockFace::ALL.iter().map(|face| face.name()))?;
             let allowed = "any face but the contact boundary";
-            SceneError::require(face != contact.name(), field, format!("\"{face}\""), allowed)
+            SceneError::require(!contact.contains(&face), field, format!("\"{face}\""), allowed)
         };
         for (index, load) in body.loads.iter().enumerate() {
             match (&load.kind, load.place.as_deref()) {
@@ -264,32 +291,13 @@ impl Scene {
             check("supports", index, &support.face)?;
         }
         let vertical = |face: &str| ![BlockFace::Bottom, BlockFace::Top].iter().any(|other| other.name() == face);
+        let horizontal = contact.iter().any(|face| !vertical(face));
         let holds = |held: &Held| matches!(held, Held::Components([_, _, Some(_)]));
         SceneError::require(
-            !body.supports.iter().any(|support| holds(&support.held) && vertical(&support.face)),
+            !(horizontal && body.supports.iter().any(|support| holds(&support.held) && vertical(&support.face))),
             format!("{name}.supports: held"),
             "u₃ held on a vertical face",
             "u₃ held on the face opposite to the contact boundary only (it would hold the contact normal)",
         )
-    }
-
-    /// The bodies, lower first, for changes.
-    pub fn bodies_mut(&mut self) -> impl Iterator<Item = &mut BodyScene> {
-        std::iter::once(&mut self.lower).chain(self.upper.as_mut().map(|upper| &mut upper.body))
-    }
-
-    /// The bodies with their names, lower first.
-    pub fn bodies(&self) -> impl Iterator<Item = (&'static str, &BodyScene)> {
-        std::iter::once(("lower", &self.lower)).chain(self.upper.as_ref().map(|upper| ("upper", &upper.body)))
-    }
-
-    /// Number of bodies.
-    pub fn body_count(&self) -> usize {
-        if self.upper.is_some() { 2 } else { 1 }
-    }
-
-    /// Number of controls.
-    pub fn control_count(&self) -> usize {
-        self.shape.control_count()
     }
 }

@@ -1,20 +1,24 @@
-//! A scene: bodies, materials, supports, loads, counter surface, contact, shape. Units: N, mm, MPa.
+//! A scene: bodies with geometry, materials, supports, loads and shape; contacts with obstacles or between bodies.
+//! Units: N, mm, MPa.
 
 mod body;
 mod contact;
 mod counter_surface;
 mod definition;
 pub(crate) mod foot;
+mod geometry;
 mod height_grid;
 pub(crate) mod jet;
 mod presets;
 mod size;
 
 pub use body::{BodyScene, Held, Load, LoadKind, Support};
-pub use contact::{AreaKind, ContactScene, NormalKind};
+pub use contact::{AreaKind, BodyFace, ContactKind, ContactScene, Master, NormalKind};
 pub use counter_surface::{CounterSurface, Side};
-pub use definition::{Blocks, Geometry, MeshGeometry, Scene, UpperBody};
+pub(crate) use definition::Opposite;
+pub use definition::Scene;
 pub use foot::Foot;
+pub use geometry::{Block, Geometry, MeshGeometry};
 pub use height_grid::HeightGrid;
 pub use presets::{hertz, signorini};
-pub use size::SceneSize;
+pub use size::{BodySize, SceneSize};

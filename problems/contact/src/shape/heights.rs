@@ -1,13 +1,38 @@
-//! The height surface that shapes the lower block: heights of its columns of nodes are linear in the controls.
+//! The height surface that shapes a block: heights of its columns of nodes are linear in the controls.
 
-use crate::body::mesh::Grid;
+use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
-use crate::shape::{ShapeBounds, ShapeMap, SplineKind, SplineSurface};
+use crate::scene::Block;
+use crate::shape::{BodyMap, ShapeBounds, SplineKind, SplineSurface};
 use serde::{Deserialize, Serialize};
+
+/// The face of a block that a height surface shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ShapedFaceName", transform = crate::schema::names_only))]
+pub enum ShapedFace {
+    /// The upper surface.
+    #[default]
+    Top,
+    /// The lower surface.
+    Bottom,
+}
+
+impl ShapedFace {
+    /// The face of the block.
+    pub fn block_face(self) -> BlockFace {
+        match self {
+            Self::Top => BlockFace::Top,
+            Self::Bottom => BlockFace::Bottom,
+        }
+    }
+}
 
 /// A spline surface over the base of a block, with its bounds and its start.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeightShape {
+    /// The face that it shapes.
+    pub face: ShapedFace,
     /// Kind of the spline surface.
     pub spline: SplineKind,
     /// Control points along x₁, x₂.
@@ -30,18 +55,32 @@ impl HeightShape {
     }
 }
 
-/// x₃ of node (i, j, k) is F_α·k/n₃; x₁ and x₂ do not change.
-pub(crate) fn height_map(surface: &SplineSurface, grid: &Grid) -> ShapeMap {
-    let heights = surface.height_map(grid);
+/// x₃ of node (i, j, k) is interpolated between the two faces, of which one is F_α; x₁ and x₂ do not change.
+pub(crate) fn height_map(surface: &SplineSurface, block: &Block, face: ShapedFace) -> BodyMap {
+    let grid = block.grid();
+    let heights = surface.height_map(&grid);
     let [_, _, layers] = grid.nodes();
-    let base = grid.places().flat_map(|[x1, x2]| std::iter::repeat_n([x1, x2, 0.0], layers)).collect();
+    let [bottom, top] = block.heights();
+    let of_top = move |k: usize| k as f64 / (layers - 1) as f64;
+    // What of a height the shaped face and the other one have at layer k.
+    let shares = move |k: usize| match face {
+        ShapedFace::Top => [of_top(k), 1.0 - of_top(k)],
+        ShapedFace::Bottom => [1.0 - of_top(k), of_top(k)],
+    };
+    let fixed = if face == ShapedFace::Top { bottom } else { top };
+    let base = grid.places().zip(&fixed).flat_map(|([x1, x2], &height)| {
+        (0..layers).map(move |k| {
+            let share = shares(k)[1];
+            [x1, x2, if share == 0.0 { 0.0 } else { share * height }]
+        })
+    });
     let rows = grid.columns().flat_map(|(i, j)| {
         let weights = heights.weights(i, j);
         (0..layers).flat_map(move |k| {
-            let share = k as f64 / (layers - 1) as f64;
+            let share = shares(k)[0];
             let scaled = weights.iter().map(|&(control, weight)| (control, share * weight));
-            [vec![], vec![], if k == 0 { vec![] } else { scaled.collect() }]
+            [vec![], vec![], if share == 0.0 { vec![] } else { scaled.collect() }]
         })
     });
-    ShapeMap::new(base, surface.control_count(), rows)
+    BodyMap { base: base.collect(), controls: surface.control_count(), rows: rows.collect() }
 }

@@ -12,7 +12,7 @@ use crate::body::Body;
 use crate::body::mesh::bounding_box;
 use crate::error::SceneError;
 use crate::names::{find_face, nodes_of};
-use crate::shape::ShapeMap;
+use crate::shape::BodyMap;
 use crate::shape::bspline::Basis;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
@@ -196,7 +196,7 @@ impl LatticeShape {
     /// # Errors
     /// [`SceneError::OutOfRange`] for names that the mesh does not have, and for a lattice that holds no node that may
     /// move.
-    pub(crate) fn map(&self, body: &Body) -> Result<ShapeMap, SceneError> {
+    pub(crate) fn map(&self, body: &Body) -> Result<BodyMap, SceneError> {
         let (mesh, bases, controls) = (&*body.mesh, self.bases()?, self.controls());
         let mut by_point: HashMap<(usize, usize), Vec<(usize, f64)>> = HashMap::new();
         for (number, control) in controls.iter().enumerate() {
@@ -237,7 +237,7 @@ impl LatticeShape {
             let allowed = format!("a box around nodes that may move; the body lies between {least:?} and {most:?} mm");
             return Err(SceneError::out_of_range("lattice", "a box without such nodes", allowed));
         }
-        Ok(ShapeMap::new(mesh.nodes().to_vec(), controls.len(), rows))
+        Ok(BodyMap { base: mesh.nodes().to_vec(), controls: controls.len(), rows })
     }
 
     /// The nodes of the region; none where all nodes in the box move.

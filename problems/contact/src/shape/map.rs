@@ -1,25 +1,62 @@
-//! The linear map from controls to the positions of the nodes of a body.
+//! The linear map from controls to the positions of the nodes of all bodies.
 //!
 //! ```text
 //! x(α) = x₀ + N α,     sensitivities of α = Nᵀ (sensitivities of x),     velocities x′ = N α′
 //! ```
+//! Nodes are counted through all bodies, in the order of the scene, and so are controls.
 
 use crate::linear::csr::Csr;
+use std::ops::Range;
+use std::sync::Arc;
 
-/// x₀ and N.
+/// Positions of the nodes of all bodies, mm.
+pub type Positions = Vec<Arc<Vec<[f64; 3]>>>;
+
+/// x₀ and N of one body, with controls of its own.
+#[derive(Debug, Clone)]
+pub(crate) struct BodyMap {
+    /// Positions for controls 0, mm.
+    pub base: Vec<[f64; 3]>,
+    pub controls: usize,
+    /// Rows of N as (control, value), three per node; none where no control moves the body.
+    pub rows: Vec<Vec<(usize, f64)>>,
+}
+
+impl BodyMap {
+    /// A row of N: how a component of the position of a node depends on the controls.
+    pub(crate) fn row(&self, node: u32, axis: usize) -> &[(usize, f64)] {
+        self.rows.get(3 * node as usize + axis).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// x₀ and N of all bodies.
 #[derive(Debug, Clone)]
 pub struct ShapeMap {
-    base: Vec<[f64; 3]>,
+    base: Positions,
+    /// First node of every body, then their number.
+    starts: Vec<usize>,
+    /// Whether any control moves a node of the body.
+    shaped: Vec<bool>,
     /// N by rows: 3·node + component.
     matrix: Csr,
 }
 
 impl ShapeMap {
-    /// The map with given positions for controls 0, mm, and rows of N as (control, value), three per node.
-    pub(crate) fn new(base: Vec<[f64; 3]>, controls: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
-        let matrix = Csr::from_rows(controls, rows);
-        debug_assert_eq!(matrix.row_count(), 3 * base.len());
-        Self { base, matrix }
+    /// The map of some bodies.
+    pub(crate) fn new(bodies: Vec<BodyMap>) -> Self {
+        let (mut starts, mut base, mut shaped, mut rows) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+        let mut controls = 0;
+        for body in bodies {
+            let count = body.base.len();
+            starts.push(starts[starts.len() - 1] + count);
+            shaped.push(body.rows.iter().any(|row| !row.is_empty()));
+            let moved = |row: Vec<(usize, f64)>| row.into_iter().map(|(own, value)| (controls + own, value)).collect();
+            rows.extend(body.rows.into_iter().map(moved));
+            rows.resize(3 * starts[starts.len() - 1], Vec::new());
+            base.push(Arc::new(body.base));
+            controls += body.controls;
+        }
+        Self { base, starts, shaped, matrix: Csr::from_rows(controls, rows) }
     }
 
     /// Number of controls.
@@ -27,22 +64,50 @@ impl ShapeMap {
         self.matrix.column_count()
     }
 
+    /// The nodes of a body among those of all bodies.
+    pub fn nodes(&self, body: usize) -> Range<usize> {
+        self.starts[body]..self.starts[body + 1]
+    }
+
+    /// Number of nodes of all bodies.
+    pub fn node_count(&self) -> usize {
+        self.starts[self.starts.len() - 1]
+    }
+
     /// Positions of all nodes, mm.
-    pub fn positions(&self, controls: &[f64]) -> Vec<[f64; 3]> {
+    pub fn positions(&self, controls: &[f64]) -> Positions {
         let mut moved = vec![0.0; self.matrix.row_count()];
         self.matrix.multiply(controls, &mut moved);
-        let nodes = self.base.iter().zip(moved.as_chunks::<3>().0);
-        nodes.map(|(base, moved)| std::array::from_fn(|axis| base[axis] + moved[axis])).collect()
+        let moved = moved.as_chunks::<3>().0;
+        let of_body = |(number, base): (usize, &Arc<Vec<[f64; 3]>>)| {
+            if !self.shaped[number] {
+                return Arc::clone(base);
+            }
+            let nodes = base.iter().zip(&moved[self.nodes(number)]);
+            let sum = |(base, moved): (&[f64; 3], &[f64; 3])| std::array::from_fn(|axis| base[axis] + moved[axis]);
+            Arc::new(nodes.map(sum).collect())
+        };
+        self.base.iter().enumerate().map(of_body).collect()
     }
 
-    /// Whether a node moves with any control.
-    pub fn moves(&self, node: u32) -> bool {
-        (0..3).any(|axis| self.matrix.row(3 * node as usize + axis).next().is_some())
+    /// Whether any control moves a node of a body.
+    pub fn shapes(&self, body: usize) -> bool {
+        self.shaped[body]
     }
 
-    /// Whether any node moves along an axis with any control.
-    pub fn moves_along(&self, axis: usize) -> bool {
-        (0..self.base.len()).any(|node| self.matrix.row(3 * node + axis).next().is_some())
+    /// The bodies that controls shape.
+    pub fn shaped_bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.shaped.len()).filter(|&body| self.shaped[body])
+    }
+
+    /// Whether a node of a body moves with any control.
+    pub fn moves(&self, body: usize, node: u32) -> bool {
+        (0..3).any(|axis| self.row(body, node, axis).next().is_some())
+    }
+
+    /// Whether any node of a body moves along an axis with any control.
+    pub fn moves_along(&self, body: usize, axis: usize) -> bool {
+        self.shaped[body] && self.nodes(body).any(|node| self.matrix.row(3 * node + axis).next().is_some())
     }
 
     /// The sensitivities of the controls from those of the positions of all nodes.
@@ -62,19 +127,19 @@ impl ShapeMap {
                 by_control[control].push((column, *value));
             }
         }
-        Velocities { matrix: &self.matrix, by_control, count: changes.len() }
+        Velocities { map: self, by_control, count: changes.len() }
     }
 
-    /// A row of N: how a component of the position of a node depends on the controls.
-    pub fn row(&self, node: u32, axis: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.matrix.row(3 * node as usize + axis)
+    /// A row of N: how a component of the position of a node of a body depends on the controls.
+    pub fn row(&self, body: usize, node: u32, axis: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.matrix.row(3 * (self.starts[body] + node as usize) + axis)
     }
 }
 
 /// Fields of velocities of the nodes, one per change of the controls.
 #[derive(Debug)]
 pub struct Velocities<'a> {
-    matrix: &'a Csr,
+    map: &'a ShapeMap,
     /// Changes of every control: (change, value).
     by_control: Vec<Vec<(usize, f64)>>,
     count: usize,
@@ -86,29 +151,35 @@ impl Velocities<'_> {
         self.count
     }
 
-    /// Whether a node moves with any control.
-    pub fn moves(&self, node: u32) -> bool {
-        (0..3).any(|axis| self.matrix.row(3 * node as usize + axis).next().is_some())
+    /// Whether a node of a body moves with any control.
+    pub fn moves(&self, body: usize, node: u32) -> bool {
+        self.map.moves(body, node)
     }
 
-    /// The velocity of a node in one of the fields.
-    pub fn at(&self, node: u32, column: usize) -> [f64; 3] {
+    /// The velocity of a node of a body in one of the fields.
+    pub fn at(&self, body: usize, node: u32, column: usize) -> [f64; 3] {
         std::array::from_fn(|axis| {
-            let terms = self.matrix.row(3 * node as usize + axis).flat_map(|(control, value)| {
+            let terms = self.map.row(body, node, axis).flat_map(|(control, value)| {
                 self.by_control[control].iter().filter(|(own, _)| *own == column).map(move |(_, change)| value * change)
             });
             terms.fold(0.0, |sum, term| sum + term)
         })
     }
 
-    /// The fields that move some of these nodes, with the velocities of the nodes, three entries each.
-    pub fn of_nodes(&self, nodes: &[u32]) -> Vec<(usize, Vec<f64>)> {
-        let mut fields: Vec<Option<Vec<f64>>> = vec![None; self.count];
-        for (place, &node) in nodes.iter().enumerate() {
+    /// The fields that move some of these nodes of a body, with the velocities of the nodes, three entries each.
+    pub fn of_nodes(&self, body: usize, nodes: &[u32]) -> Vec<(usize, Vec<f64>)> {
+        let first = self.map.starts[body];
+        self.of_numbers(nodes.iter().map(|&node| first + node as usize))
+    }
+
+    /// As [`of_nodes`](Self::of_nodes), for nodes by their numbers among those of all bodies.
+    pub(crate) fn of_numbers(&self, nodes: impl ExactSizeIterator<Item = usize>) -> Vec<(usize, Vec<f64>)> {
+        let (mut fields, count): (Vec<Option<Vec<f64>>>, usize) = (vec![None; self.count], nodes.len());
+        for (place, node) in nodes.enumerate() {
             for axis in 0..3 {
-                for (control, value) in self.matrix.row(3 * node as usize + axis) {
+                for (control, value) in self.map.matrix.row(3 * node + axis) {
                     for &(column, change) in &self.by_control[control] {
-                        let field = fields[column].get_or_insert_with(|| vec![0.0; 3 * nodes.len()]);
+                        let field = fields[column].get_or_insert_with(|| vec![0.0; 3 * count]);
                         field[3 * place + axis] += value * change;
                     }
                 }

@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn constant_controls_give_a_flat_surface_and_the_maps_are_adjoint() {
-        let grid = Grid { cells: [7, 5, 2], size: [100.0, 50.0] };
+        let grid = Grid { cells: [7, 5, 2], corner: [0.0; 2], size: [100.0, 50.0] };
         let surface = SplineSurface::new(SplineKind::BSpline(3), [6, 5]).expect("valid");
         let map = surface.height_map(&grid);
         assert!(map.heights(&[4.0; 30]).iter().all(|height| (height - 4.0).abs() < 1e-14));

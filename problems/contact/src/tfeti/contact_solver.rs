@@ -25,7 +25,7 @@ impl TotalFeti {
         let mut clock = Clock::start();
         let (direction, loads) = self.problem().parts_of(direction)?;
         let Some(contact) = self.contact_of(state)? else {
-            return Ok(Sensitivities::at_rest(self.problem().bodies[0].mesh.node_count()));
+            return Ok(Sensitivities::at_rest(self.problem()));
         };
         Stage::Adjoint.enter()?;
         let constraints = &self.model.constraints;
@@ -37,7 +37,8 @@ impl TotalFeti {
         let iterate = &state.solution.iterate;
         // A sensitivity of J over the size of the body, or over its displacement where that is larger; below the
         // rounding of this scale, no residual means anything.
-        let size_of_body = smallest_extent(&state.positions[0]);
+        let shaped = self.problem().map.shaped_bodies().map(|body| smallest_extent(&state.positions[body]));
+        let size_of_body = shaped.fold(f64::INFINITY, f64::min);
         let load = loads.map(|loads| DisplacementLoad::new(&contact.operator, loads, &state.displacement));
         let [work, size] = load.as_ref().map_or([0.0; 2], |load| load.products);
         let natural = (dot(scaled.contact(), iterate.multipliers.contact()).abs() + work.abs())

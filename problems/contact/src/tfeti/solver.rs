@@ -1,7 +1,7 @@
 //! From a shape to its contact forces by TFETI.
 
 use crate::equilibrium::certificate::law_residuals;
-use crate::equilibrium::law::{self, Linearization};
+use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
     Configuration, ContactForces, ContactProblem, ContactRows, ContactState, ContactWarmStart, Failed, Kink, Residuals,
     Stage, StageSeconds, Work,
@@ -254,7 +254,7 @@ fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: 
     for (point, linearization) in contact.boundary.points.iter().zip(linearizations) {
         if *linearization != Linearization::Open {
             let rows = point.rows();
-            law::project(&forces[rows.clone()], point.friction, &mut admissible[rows]);
+            point.project(&forces[rows.clone()], &mut admissible[rows]);
         }
     }
     admissible

@@ -1,6 +1,7 @@
 //! A shape solved by total FETI, with all that its derivative needs.
 
-use crate::equilibrium::{ContactRows, ContactWarmStart, Positions, SolverState};
+use crate::equilibrium::{ContactRows, ContactWarmStart, SolverState};
+use crate::shape::Positions;
 use crate::tfeti::derivative::SolvedShape;
 use crate::tfeti::dual::{CoarseSpace, TornSolution};
 use crate::tfeti::torn::{Constraints, TornSystem, TornVector};
@@ -9,7 +10,7 @@ use std::sync::Arc;
 /// A solved shape with all that its derivative needs.
 #[derive(Debug)]
 pub struct TornState {
-    /// Positions of the nodes of all bodies, lower first.
+    /// Positions of the nodes of all bodies.
     pub(crate) positions: Positions,
     pub(super) rows: Arc<ContactRows>,
     pub(super) system: TornSystem,
@@ -25,7 +26,7 @@ pub struct TornState {
 impl TornState {
     pub(super) fn shape(&self) -> SolvedShape<'_> {
         SolvedShape {
-            lower: &self.positions[0],
+            positions: &self.positions,
             rows: &self.rows,
             displacement: &self.displacement,
             multipliers: &self.solution.iterate.multipliers,

@@ -40,8 +40,7 @@ fn unit_changes(count: usize) -> Vec<Vec<f64>> {
 /// The gradient of a piece by the controls, by an adjoint.
 fn by_adjoint(shape: &ContactShape, at: &Vector, state: &ContactState, piece: &FieldPiece) -> Vector {
     let problem = shape.problem();
-    let nodes = problem.bodies[0].mesh.node_count();
-    let gradient = piece.gradient(problem.displacement_count(), nodes);
+    let gradient = piece.gradient(problem.map.node_count());
     let mut dual = vec![0.0; problem.boundary.row_count];
     dual.extend(gradient.displacements);
     let explicit = Vector::from_vec(problem.map.pull_back(&gradient.positions));

@@ -104,7 +104,7 @@ fn seeded_shape(seed: u64, level: f64, size: f64) -> Vector {
 
 fn one_body(friction: f64, load: f64) -> Scene {
     let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_friction(friction);
-    scene.lower.loads[0] = scene.lower.loads[0].scaled(load);
+    scene.bodies[0].loads[0] = scene.bodies[0].loads[0].scaled(load);
     scene
 }
 

@@ -11,8 +11,8 @@ use nonsmooth::{Accuracy, StateSolver, Vector};
 
 const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 
-fn face(body: usize, name: &str) -> Region {
-    Region { body: Some(body), face: Some(name.into()), ..Region::WHOLE }
+fn face(body: &str, name: &str) -> Region {
+    Region { body: Some(body.into()), face: Some(name.into()), ..Region::WHOLE }
 }
 
 fn measures(scene: &Scene) -> Vec<FieldMeasure> {
@@ -21,23 +21,26 @@ fn measures(scene: &Scene) -> Vec<FieldMeasure> {
     let inner = Region {
         lower: [0.2 * height, 0.2 * height, 0.3 * height],
         upper: [f64::INFINITY, f64::INFINITY, 0.7 * height],
-        body: Some(0),
+        body: Some("lower".into()),
         ..Region::WHOLE
     };
     let above = Region { lower: [0.2 * height, 0.2 * height, 0.3 * height], ..Region::WHOLE };
     let displacement = |region, component, least| FieldMeasure::Displacement { region, component, least };
     let mut measures = vec![
         FieldMeasure::PeakStress { region: Region::WHOLE, without_held: true },
-        FieldMeasure::PeakStress { region: Region { body: Some(0), ..above.clone() }, without_held: false },
-        displacement(face(0, "top"), Some(2), false),
-        displacement(face(0, "x1-max"), Some(0), false),
+        FieldMeasure::PeakStress {
+            region: Region { body: Some("lower".into()), ..above.clone() },
+            without_held: false,
+        },
+        displacement(face("lower", "top"), Some(2), false),
+        displacement(face("lower", "x1-max"), Some(0), false),
         displacement(inner, Some(0), true),
         displacement(above, None, false),
         FieldMeasure::StressNorm { region: Region::WHOLE, exponent: 8.0 },
         FieldMeasure::Compliance,
     ];
-    if scene.upper.is_some() {
-        measures.push(displacement(face(1, "bottom"), Some(1), true));
+    if scene.bodies.len() > 1 {
+        measures.push(displacement(face("upper", "bottom"), Some(1), true));
     }
     measures
 }
@@ -87,18 +90,24 @@ fn refused(measure: FieldMeasure) -> String {
 #[test]
 fn measures_without_a_meaning_are_refused() {
     let displacement = |region, component, least| FieldMeasure::Displacement { region, component, least };
-    let nearby = Region { upper: [1.0, 100.0, 100.0], ..face(0, "x1-max") };
+    let nearby = Region { upper: [1.0, 100.0, 100.0], ..face("lower", "x1-max") };
     let low = Region { upper: [100.0, 100.0, 10.0], ..Region::WHOLE };
     let at_supports = Region { upper: [25.0, 100.0, 100.0], ..Region::WHOLE };
     for (measure, words) in [
         (displacement(Region::WHOLE, Some(3), false), ["limits[2].component = 3", "0, 1 or 2"]),
         (displacement(Region::WHOLE, None, true), ["limits[2].least = true", "length"]),
-        (displacement(face(0, "topp"), None, false), ["limits[2].region.face = \"topp\"", "did you mean \"top\""]),
-        (displacement(face(1, "top"), None, false), ["limits[2].region.body = upper", "no upper one"]),
+        (
+            displacement(face("lower", "topp"), None, false),
+            ["limits[2].region.face = \"topp\"", "did you mean \"top\""],
+        ),
+        (
+            displacement(face("upper", "top"), None, false),
+            ["limits[2].region.body = \"upper\"", "allowed: \"lower\""],
+        ),
         (displacement(nearby, None, false), ["limits[2].region", "node of the face"]),
         (displacement(low, None, false), ["limits[2].region", "centre of a cell"]),
         (
-            FieldMeasure::PeakStress { region: face(0, "top"), without_held: false },
+            FieldMeasure::PeakStress { region: face("lower", "top"), without_held: false },
             ["limits[2].region.face = \"top\"", "whole cells"],
         ),
         (
@@ -143,7 +152,7 @@ fn tangents_of_displacements_change_nothing_else() {
 #[test]
 fn displacements_of_bodies_at_rest_do_not_change() {
     let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
-    scene.lower.loads.clear();
+    scene.bodies[0].loads.clear();
     for kind in KINDS {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let at = shape.start() * 0.9;

@@ -1,6 +1,6 @@
 //! Several load cases of one shape: value, subgradient, Jacobian and limits over all of them.
 
-use crate::common::start_height;
+use crate::common::{change_counter_surface, start_height};
 use contact::body::mesh::BlockFace;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
@@ -16,9 +16,8 @@ use nonsmooth::{Accuracy, ConstraintEvaluation, NonsmoothObjective, OutputJacobi
 fn scenes() -> [(&'static str, Scene); 3] {
     let scene = |pull: f64, friction, moved| {
         let mut scene = hertz().unwrap().with_bricks([4; 3], [2; 3]).with_friction(friction);
-        scene.counter_surface = scene.counter_surface.moved([moved, 0.0, 0.0]);
-        let upper = &mut scene.upper.as_mut().unwrap().body;
-        upper.loads[1] = Load::traction(BlockFace::X1Max.name(), [pull, 0.0, -2000.0]);
+        change_counter_surface(&mut scene, |surface| surface.moved([moved, 0.0, 0.0]));
+        scene.bodies[1].loads[1] = Load::traction(BlockFace::X1Max.name(), [pull, 0.0, -2000.0]);
         scene
     };
     [("left", scene(-500.0, 0.3, -0.5)), ("still", scene(0.0, 0.0, 0.0)), ("right", scene(500.0, 0.3, 0.5))]
@@ -150,7 +149,7 @@ fn the_bending_is_added_with_its_derivatives() {
             |objective: &ContactObjective| objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value;
         let scene = &plain.solver().problem().scene;
         let surface = scene.heights().unwrap().surface().unwrap();
-        let energy = at.dot(&(contact::shape::bending(&surface, scene.blocks().unwrap().size) * &at));
+        let energy = at.dot(&(contact::shape::bending(&surface, scene.bodies[0].block().unwrap().size) * &at));
         let expected = value(&plain) + weight * energy;
         assert!((value(&bent) / expected - 1.0).abs() < 1e-12 && weight * energy > 1e-9 * expected);
         let direction = Direction::Given(seeded_direction(36, 4));
@@ -170,7 +169,7 @@ fn the_bending_is_added_with_its_derivatives() {
 
 fn limits() -> Vec<Limit> {
     let field = |measure| LimitedQuantity::Field(measure);
-    let region = Region { body: Some(0), face: Some("top".into()), ..Region::WHOLE };
+    let region = Region { body: Some("lower".into()), face: Some("top".into()), ..Region::WHOLE };
     let displacement = |least| FieldMeasure::Displacement { region: region.clone(), component: Some(2), least };
     let one = |quantity, side, bound, case: Option<&str>| Limit {
         case: case.map(str::to_owned),
@@ -251,8 +250,7 @@ fn a_jacobian_gives_the_gradients_of_the_limits_without_adjoints() {
 fn a_case_without_equilibrium_fails_the_evaluation_with_its_name() {
     let [(name, scene), mut loose, _] = scenes();
     // Nothing but contact holds the upper body along x3, and it is pulled off.
-    let upper = &mut loose.1.upper.as_mut().unwrap().body;
-    upper.loads = vec![Load::traction(BlockFace::Top.name(), [0.0, 0.0, 100.0])];
+    loose.1.bodies[1].loads = vec![Load::traction(BlockFace::Top.name(), [0.0, 0.0, 100.0])];
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let objective = objective(&[(name, scene.clone()), loose.clone()], kind, &norm(), Over::Worst, &[]);
         let error = objective.evaluate(&Request::tight(&shape(&objective, 3))).unwrap_err().to_string();

@@ -18,21 +18,21 @@ const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 fn scenes() -> impl Iterator<Item = Scene> {
     let scene = |scene: Scene, friction| {
         let mut scene = scene.with_bricks([4; 3], [2, 1, 2]).with_friction(friction);
-        let push = scene.lower.loads.first().map_or(20.0, |load| match load.kind {
+        let push = scene.bodies[0].loads.first().map_or(20.0, |load| match load.kind {
             LoadKind::Traction([_, _, normal]) => 0.02 * normal,
             _ => unreachable!("the presets have tractions"),
         });
-        scene.lower.loads.push(Load::traction(BlockFace::X1Max, [-push, 0.0, 0.2 * push]));
+        scene.bodies[0].loads.push(Load::traction(BlockFace::X1Max, [-push, 0.0, 0.2 * push]));
         scene
     };
     [0.0, 0.3].into_iter().flat_map(move |friction| [signorini(), hertz()].map(|found| scene(found.unwrap(), friction)))
 }
 
 /// A box that leaves out parts of both bodies.
-fn region(scene: &Scene, body: Option<usize>) -> Region {
-    let ([a, b], height) = (scene.blocks().unwrap().size, start_height(scene));
+fn region(scene: &Scene, body: Option<&str>) -> Region {
+    let ([a, b], height) = (scene.bodies[0].block().unwrap().size, start_height(scene));
     let (lower, upper) = ([0.0, 0.2 * b, 0.3 * height], [0.7 * a, b, 1.6 * height]);
-    Region { lower, upper, body, volume: None, face: None }
+    Region { lower, upper, body: body.map(str::to_owned), volume: None, face: None }
 }
 
 fn controls(shape: &ContactShape, seed: u64) -> Vector {
@@ -64,7 +64,11 @@ fn differentiated(name: &str, scene: &Scene, measure: impl Fn(&ContactShape) -> 
     let (value, slope) = (newton.1 / direct.1 - 1.0, (&newton.2 - &direct.2).norm() / direct.2.norm());
     println!(
         "{name}, {}, friction {}: {:.6e}; derivatives {:.1e}, {:.1e}; solvers differ by {value:.1e}, {slope:.1e}",
-        scene.name, scene.contact.friction, newton.1, newton.0, direct.0
+        scene.name,
+        scene.friction(),
+        newton.1,
+        newton.0,
+        direct.0
     );
     assert!(newton.0 < 1e-6 && direct.0 < 1e-6, "{name}: {} {}", newton.0, direct.0);
     assert!(value.abs() < 1e-9 && slope < 1e-7, "{name}: {value:e} {slope:e}");
@@ -73,7 +77,7 @@ fn differentiated(name: &str, scene: &Scene, measure: impl Fn(&ContactShape) -> 
 #[test]
 fn stress_norm() {
     for scene in scenes() {
-        let bodies = if scene.upper.is_some() { vec![None, Some(0), Some(1)] } else { vec![None] };
+        let bodies = if scene.bodies.len() > 1 { vec![None, Some("lower"), Some("upper")] } else { vec![None] };
         for (body, exponent) in bodies.into_iter().zip([6.0, 12.0, 3.0]) {
             let measure = FieldMeasure::StressNorm { region: region(&scene, body), exponent };
             let name = format!("stress norm {exponent}, body {body:?}");
@@ -114,7 +118,7 @@ fn measures_of_the_pressures() {
     for scene in scenes() {
         differentiated("deviation from a wanted pressure", &scene, |shape| {
             let mean = mean_pressure(shape);
-            let grid = shape.problem().scene.blocks().unwrap().grid();
+            let grid = shape.problem().scene.bodies[0].block().unwrap().grid();
             let places = grid.places();
             let wanted = places.map(|[x1, x2]| mean * (1.0 + x1 / grid.size[0] - x2 / grid.size[1])).collect();
             Measure::Pressure(PressureMeasure::Deviation { wanted })
@@ -169,8 +173,8 @@ fn regions_without_a_brick_or_a_body_are_refused() {
     let all = Region::WHOLE;
     let outside = refused(Region { lower: [0.0, 0.0, 200.0], ..all.clone() });
     assert!(outside.contains("objective.region") && outside.contains("centre of a cell"), "{outside}");
-    let upper = refused(Region { body: Some(1), ..all });
-    assert!(upper.contains("objective.region.body = upper"), "{upper}");
+    let upper = refused(Region { body: Some("upper".into()), ..all });
+    assert!(upper.contains("objective.region.body = \"upper\""), "{upper}");
 }
 
 /// The limited peak, whose subgradient comes with the evaluation, as an objective of its own.

@@ -19,21 +19,21 @@ fn moved(face: BlockFace, values: [Option<f64>; 3]) -> Support {
 fn scenes() -> Vec<(&'static str, Scene)> {
     let of_hertz = |lower: f64, upper: f64| {
         let mut scene = hertz().unwrap().with_bricks([4; 3], [2, 1, 2]).with_friction(0.3);
-        scene.lower.supports[2] = moved(BlockFace::Bottom, [None, None, Some(lower)]);
-        let body = &mut scene.upper.as_mut().unwrap().body;
+        scene.bodies[0].supports[2] = moved(BlockFace::Bottom, [None, None, Some(lower)]);
+        let body = &mut scene.bodies[1];
         body.loads.clear();
         body.supports.push(moved(BlockFace::Top, [None, None, Some(upper)]));
         scene
     };
     let of_signorini = |friction: f64| {
         let mut scene = signorini().unwrap().with_bricks([4; 3], [2, 1, 2]).with_friction(friction);
-        scene.lower.loads.clear();
-        scene.lower.supports = vec![moved(BlockFace::Bottom, [Some(0.4), Some(-0.2), Some(3.0)])];
-        scene.contact.normal = NormalKind::Surface;
+        scene.bodies[0].loads.clear();
+        scene.bodies[0].supports = vec![moved(BlockFace::Bottom, [Some(0.4), Some(-0.2), Some(3.0)])];
+        scene.contacts[0].normal = NormalKind::Surface;
         scene
     };
     let mut dragged = of_signorini(0.0);
-    dragged.lower.supports.push(moved(BlockFace::X1Min, [Some(0.4), None, None]));
+    dragged.bodies[0].supports.push(moved(BlockFace::X1Min, [Some(0.4), None, None]));
     vec![
         ("upper body", of_hertz(0.0, -0.05)),
         ("lower body", of_hertz(0.05, 0.0)),

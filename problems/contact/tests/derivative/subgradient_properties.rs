@@ -10,7 +10,7 @@ type Objective = CompositeObjective<ContactShape, PressureCost>;
 
 fn objective(scene: Scene, friction: f64, load: f64, measure: PressureMeasure) -> Objective {
     let mut scene = scene.with_bricks([4; 3], [2; 3]).with_friction(friction);
-    for part in scene.bodies_mut().flat_map(|body| &mut body.loads) {
+    for part in scene.bodies.iter_mut().flat_map(|body| &mut body.loads) {
         *part = part.scaled(load);
     }
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();

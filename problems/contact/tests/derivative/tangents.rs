@@ -135,9 +135,9 @@ fn tangents_in_single_precision_do_not_depend_on_the_unit_of_force() {
     let unit = ten_tangents(signorini().unwrap(), 1e-2);
     for factor in [1e-9, 1e9] {
         let mut scene = signorini().unwrap();
-        let material = scene.lower.material;
-        scene.lower.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
-        for load in &mut scene.lower.loads {
+        let material = scene.bodies[0].material;
+        scene.bodies[0].material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
+        for load in &mut scene.bodies[0].loads {
             *load = load.scaled(factor);
         }
         let mut other = ten_tangents(scene, 1e-2);

@@ -34,8 +34,8 @@ pub fn obstacles() -> Vec<(&'static str, CounterSurface)> {
 /// A distorted block pressed and pushed from below, held along its near side: nodes of that side have cut rows.
 pub fn pressed(kind: CellKind, obstacle: CounterSurface, friction: f64) -> Scene {
     let mut scene = scene(mesh(kind, [3, 3, 2], 0.2, boxed(SIZE)), obstacle, friction);
-    scene.lower.supports = vec![held("x1-min", [true, true, false])];
-    scene.lower.loads = vec![pushed("bottom", [3.0, 2.0, 25.0]), pushed("x1-max", [-2.0, 1.0, 1.0])];
+    scene.bodies[0].supports = vec![held("x1-min", [true, true, false])];
+    scene.bodies[0].loads = vec![pushed("bottom", [3.0, 2.0, 25.0]), pushed("x1-max", [-2.0, 1.0, 1.0])];
     scene
 }
 

@@ -41,7 +41,7 @@ fn under_ball(kind: CellKind, cells: usize, depth: f64) -> Scene {
     let centre = turn.of([0.0, 0.0, SIDE + RADIUS - depth]);
     let ball = CounterSurface::Ball { centre, radius: RADIUS, side: Side::Outside };
     let mut scene = scene(mesh(kind, [cells; 3], 0.0, map), ball, 0.0);
-    scene.lower.supports = along_normals(&["x1-min", "x2-min", "bottom"]);
+    scene.bodies[0].supports = along_normals(&["x1-min", "x2-min", "bottom"]);
     scene
 }
 
@@ -54,7 +54,7 @@ fn under_cylinder(kind: CellKind, cells: usize, depth: f64) -> Scene {
     let axis = turn.of([0.0, 3.0, 0.0]);
     let cylinder = CounterSurface::Cylinder { point, axis, radius: RADIUS, side: Side::Outside };
     let mut scene = scene(mesh(kind, [cells, 1, cells], 0.0, map), cylinder, 0.0);
-    scene.lower.supports = along_normals(&["x1-min", "x2-min", "x2-max", "bottom"]);
+    scene.bodies[0].supports = along_normals(&["x1-min", "x2-min", "x2-max", "bottom"]);
     scene
 }
 

@@ -63,8 +63,8 @@ fn inflated(body: Body, kind: CellKind, cells: usize, curves: bool) -> Scene {
     };
     let mut scene = scene(mesh_of(body, kind, cells, curves), wall, 0.3);
     let along_normal = |face: &str| Support { face: face.to_owned(), held: Held::Normal(0.0) };
-    scene.lower.supports = ["x1-min", "x1-max", "x2-min", "x2-max"].map(along_normal).to_vec();
-    scene.lower.loads = vec![Load { place: Some("bottom".into()), kind: LoadKind::Pressure(PRESSURE) }];
+    scene.bodies[0].supports = ["x1-min", "x1-max", "x2-min", "x2-max"].map(along_normal).to_vec();
+    scene.bodies[0].loads = vec![Load { place: Some("bottom".into()), kind: LoadKind::Pressure(PRESSURE) }];
     scene
 }
 

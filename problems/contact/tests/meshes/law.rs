@@ -69,7 +69,7 @@ fn foot_violation(obstacle: &CounterSurface, x: Point, normal: Point, gap: f64) 
 fn loads(scene: &Scene, positions: &[Point]) -> Vec<Point> {
     let mesh = mesh_of(scene);
     let mut sum = vec![[0.0; 3]; mesh.node_count()];
-    for load in &scene.lower.loads {
+    for load in &scene.bodies[0].loads {
         let faces = load.place.as_ref().map(|name| &mesh.faces()[name][..]);
         let own = match &load.kind {
             LoadKind::Traction(traction) => traction_forces(mesh, positions, faces.unwrap_or_default(), *traction),
@@ -85,7 +85,7 @@ fn loads(scene: &Scene, positions: &[Point]) -> Vec<Point> {
 fn held(scene: &Scene) -> Vec<[bool; 3]> {
     let mesh = mesh_of(scene);
     let mut held = vec![[false; 3]; mesh.node_count()];
-    for support in &scene.lower.supports {
+    for support in &scene.bodies[0].supports {
         let Held::Components(components) = support.held else { unreachable!("supports of these tests") };
         let nodes = mesh.faces()[&support.face].iter().flat_map(|face| mesh.face_nodes(*face));
         nodes.for_each(|node| (0..3).for_each(|axis| held[node as usize][axis] |= components[axis].is_some()));
@@ -97,7 +97,7 @@ fn held(scene: &Scene) -> Vec<[bool; 3]> {
 fn ties(scene: &Scene) -> BTreeMap<u32, [u32; 2]> {
     let mesh = mesh_of(scene);
     let mut ties = BTreeMap::new();
-    for &face in &mesh.faces()[&scene.contact.face] {
+    for &face in &mesh.faces()[&scene.contacts[0].slave.face] {
         let nodes: Vec<u32> = mesh.face_nodes(face).collect();
         if nodes.len() == 6 {
             ties.extend((0..3).map(|edge| (nodes[3 + edge], [nodes[edge], nodes[(edge + 1) % 3]])));
@@ -110,7 +110,7 @@ fn ties(scene: &Scene) -> BTreeMap<u32, [u32; 2]> {
 /// their edges, between which displacements are linear; no component that a support holds. And by how far middle nodes
 /// are away from the middle, over the largest displacement.
 fn rest(scene: &Scene, positions: &[Point], u: &[Point]) -> (Vec<Point>, f64) {
-    let material = scene.lower.material;
+    let material = scene.bodies[0].material;
     let constants = [material.young_modulus(), material.poisson_ratio()];
     let internal = internal_forces(mesh_of(scene), positions, u, constants);
     let loads = loads(scene, positions);
@@ -134,6 +134,7 @@ fn rest(scene: &Scene, positions: &[Point], u: &[Point]) -> (Vec<Point>, f64) {
 pub fn violation(shape: &ContactShape, state: &ContactState) -> Violation {
     let problem = shape.problem();
     let scene = &problem.scene;
+    let obstacle = scene.contacts[0].obstacle().unwrap();
     let bodies = shape.bodies(state).unwrap();
     let (positions, u) = (&bodies[0].positions[..], &bodies[0].displacement[..]);
     let (rest, away) = rest(scene, positions, u);
@@ -147,7 +148,7 @@ pub fn violation(shape: &ContactShape, state: &ContactState) -> Violation {
     }
     for (index, point) in problem.boundary.points.iter().enumerate() {
         let (node, row) = (point.node as usize, &state.rows.nodes[index]);
-        found.foot = found.foot.max(foot_violation(&scene.counter_surface, positions[node], row.normal, row.gap));
+        found.foot = found.foot.max(foot_violation(obstacle, positions[node], row.normal, row.gap));
         let free = |x: Point| std::array::from_fn(|axis| if held[node][axis] { 0.0 } else { x[axis] });
         let across = free(row.normal);
         let normal = dot(across, rest[node]) / dot(across, across);

@@ -37,10 +37,10 @@ fn pressed(kind: CellKind, cells: usize, traction: f64) -> Scene {
     let cylinder =
         CounterSurface::Cylinder { point, axis: turn.of([0.0, 1.0, 0.0]), radius: RADIUS, side: Side::Outside };
     let mut scene = scene(mesh(kind, [2 * cells, 1, cells], 0.0, map), cylinder, FRICTION);
-    scene.lower.material = material([1000.0, 0.499]).with_formulation(Formulation::MeanDilatation);
+    scene.bodies[0].material = material([1000.0, 0.499]).with_formulation(Formulation::MeanDilatation);
     let along_normal = |face: &str| Support { face: face.to_owned(), held: Held::Normal(0.0) };
-    scene.lower.supports = ["x2-min", "x2-max", "bottom"].map(along_normal).to_vec();
-    scene.lower.loads = vec![pushed("bottom", turn.of([traction, 0.0, 0.0]))];
+    scene.bodies[0].supports = ["x2-min", "x2-max", "bottom"].map(along_normal).to_vec();
+    scene.bodies[0].loads = vec![pushed("bottom", turn.of([traction, 0.0, 0.0]))];
     scene
 }
 

@@ -7,7 +7,7 @@ use crate::setting::{PATHS, Rotation, difference, held, material, pushed, scene,
 use contact::body::mesh::CellKind;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::equilibrium::ContactStatus;
-use contact::scene::{CounterSurface, Load, LoadKind, Scene};
+use contact::scene::{CounterSurface, Load, LoadKind, Master, Scene};
 
 const SIZE: Point = [30.0, 20.0, 12.0];
 const PRESSURE: f64 = 25.0;
@@ -27,7 +27,7 @@ fn block(kind: CellKind, angle: f64, friction: f64) -> Scene {
 /// Pressed by a pressure on its bottom, which turns with the body.
 fn pressed(kind: CellKind, angle: f64) -> Scene {
     let mut scene = block(kind, angle, 0.0);
-    scene.lower.loads = vec![Load { place: Some("bottom".into()), kind: LoadKind::Pressure(PRESSURE) }];
+    scene.bodies[0].loads = vec![Load { place: Some("bottom".into()), kind: LoadKind::Pressure(PRESSURE) }];
     scene
 }
 
@@ -36,8 +36,8 @@ fn pressed(kind: CellKind, angle: f64) -> Scene {
 fn sheared(kind: CellKind, angle: f64) -> Scene {
     let turn = Rotation::about(angle);
     let mut scene = block(kind, angle, 0.3);
-    scene.lower.material = material([1000.0, 0.0]);
-    scene.lower.loads = vec![
+    scene.bodies[0].material = material([1000.0, 0.0]);
+    scene.bodies[0].loads = vec![
         pushed("bottom", turn.of([-SHEAR, 0.0, PRESSURE])),
         pushed("x1-max", turn.of([0.0, 0.0, SHEAR])),
         pushed("x1-min", turn.of([0.0, 0.0, -SHEAR])),
@@ -115,9 +115,9 @@ fn a_turned_block_has_the_turned_forces() {
         let turn = Rotation::about(angle);
         let mut scene = block(kind, angle, friction);
         let (point, normal) = (turn.of([3.0, 5.0, SIZE[2]]), turn.of([0.03, -0.02, 1.0]));
-        scene.counter_surface = CounterSurface::TiltedPlane { point, normal };
-        scene.lower.supports = vec![held("x1-min", [true; 3])];
-        scene.lower.loads = vec![pushed("bottom", turn.of([1.0, 0.5, 6.0]))];
+        scene.contacts[0].master = Master::Obstacle(CounterSurface::TiltedPlane { point, normal });
+        scene.bodies[0].supports = vec![held("x1-min", [true; 3])];
+        scene.bodies[0].loads = vec![pushed("bottom", turn.of([1.0, 0.5, 6.0]))];
         let (_, state) = solve(&scene, path, None);
         let rows = state.rows.nodes.iter().zip(&state.forces.normal);
         let mut forces: Vec<Point> = rows.map(|(row, force)| row.normal.map(|n| force * n)).collect();

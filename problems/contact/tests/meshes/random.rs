@@ -4,13 +4,12 @@
 use crate::elements::{cross, plus};
 use crate::grid::{KINDS, Point, boxed, curved, mesh, sector, shell};
 use crate::law::violation;
-use crate::setting::{PATHS, difference, extent, held, lattice, material, pushed, scene};
+use crate::setting::{PATHS, difference, extent, held, lattice, lattice_of, material, pushed, scene};
 use contact::body::mesh::Mesh;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, ContactState};
 use contact::cost::{Measure, NodeWeight, PressureMeasure};
 use contact::scene::{CounterSurface, Geometry, Load, LoadKind, Scene, Side};
-use contact::shape::ShapeScene;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, NonsmoothObjective, Request, StateSolver, Vector};
 use proptest::prelude::*;
@@ -107,33 +106,33 @@ fn scene_of(case: &Case) -> Scene {
     let (corner, size) = extent(mesh.nodes());
     let obstacle = obstacle(case.form, place, case.tilt, case.radius);
     let mut scene = scene(mesh, obstacle, case.friction);
-    scene.lower.material = material([1000.0, case.poisson_ratio]);
-    if let Geometry::Mesh(geometry) = &mut scene.geometry {
+    scene.bodies[0].material = material([1000.0, case.poisson_ratio]);
+    if let Geometry::Mesh(geometry) = &mut scene.bodies[0].geometry {
         geometry.pieces = Some(case.pieces);
     }
     let [a, b] = case.push;
     match case.grip {
         Grip::Bottom => {
             let force = [4.0 * a, 4.0 * b, 4.0];
-            scene.lower.supports = vec![held("bottom", [true; 3])];
-            scene.lower.loads = vec![Load { place: None, kind: LoadKind::BodyForce(force) }];
+            scene.bodies[0].supports = vec![held("bottom", [true; 3])];
+            scene.bodies[0].loads = vec![Load { place: None, kind: LoadKind::BodyForce(force) }];
         }
         Grip::Side => {
-            scene.lower.supports = vec![held("x1-min", [true, true, false])];
+            scene.bodies[0].supports = vec![held("x1-min", [true, true, false])];
             let force = [a, b, 2.0];
-            scene.lower.loads = vec![Load { place: None, kind: LoadKind::BodyForce(force) }];
+            scene.bodies[0].loads = vec![Load { place: None, kind: LoadKind::BodyForce(force) }];
             // Sides of curved bodies are flat only where the map has planes: those of the box.
             if case.shape == 0 {
-                scene.lower.loads.push(pushed("bottom", [a, b, 5.0]));
+                scene.bodies[0].loads.push(pushed("bottom", [a, b, 5.0]));
             }
         }
     }
     // The lattice leaves the bottom as it is: its tractions are those of flat faces.
     let middle = [corner[0], corner[1], corner[2] + 0.4 * size[2]];
-    scene.shape = ShapeScene::Lattice(lattice(middle, [size[0], size[1], 0.6 * size[2]], [2; 3]));
-    let ShapeScene::Lattice(lattice) = &mut scene.shape else { unreachable!("set above") };
+    let lattice_of = lattice_of(&mut scene);
+    *lattice_of = lattice(middle, [size[0], size[1], 0.6 * size[2]], [2; 3]);
     // The first layer stays, so that the shape is continuous.
-    lattice.frozen[2] = [1, 0];
+    lattice_of.frozen[2] = [1, 0];
     scene
 }
 

@@ -2,13 +2,13 @@
 
 use crate::elements::plus;
 use crate::grid::{KINDS, Point, boxed, mesh};
-use crate::setting::{PATHS, Rotation, difference, held, pushed, scene};
+use crate::setting::{PATHS, Rotation, difference, held, lattice_of, pushed, scene};
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
 use contact::scene::{CounterSurface, Held, Scene, Side, Support};
-use contact::shape::{Coordinates, ShapeScene};
+use contact::shape::Coordinates;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
@@ -24,14 +24,14 @@ fn scene_of(kind: CellKind, friction: f64, angle: Option<f64>) -> Scene {
     let centre = turn.of([2.0, 1.0, SIZE[2] + 40.01]);
     let mut scene = scene(mesh, CounterSurface::Ball { centre, radius: 40.0, side: Side::Outside }, friction);
     let sides = ["x1-min", "x2-min"].map(str::to_owned);
-    scene.lower.supports = match angle {
+    scene.bodies[0].supports = match angle {
         Some(_) => sides.map(|face| Support { face, held: Held::Normal(0.0) }).to_vec(),
         None => vec![held(&sides[0], [true, false, false]), held(&sides[1], [false, true, false])],
     };
-    scene.lower.loads = vec![pushed("bottom", turn.of([2.0, 1.0, 20.0])), pushed("x1-max", turn.of([-3.0, 1.0, 2.0]))];
-    let ShapeScene::Lattice(lattice) = &mut scene.shape else { unreachable!("scenes here have lattices") };
+    scene.bodies[0].loads =
+        vec![pushed("bottom", turn.of([2.0, 1.0, 20.0])), pushed("x1-max", turn.of([-3.0, 1.0, 2.0]))];
     let edge = |axis: usize| turn.of(std::array::from_fn(|other| if other == axis { SIZE[axis] } else { 0.0 }));
-    lattice.coordinates = Coordinates::Cartesian { corner: [0.0; 3], edges: std::array::from_fn(edge) };
+    lattice_of(&mut scene).coordinates = Coordinates::Cartesian { corner: [0.0; 3], edges: std::array::from_fn(edge) };
     scene
 }
 

@@ -5,7 +5,7 @@ use contact::body::elasticity::Material;
 use contact::body::mesh::Mesh;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::scene::{
-    AreaKind, BodyScene, ContactScene, CounterSurface, Geometry, Load, MeshGeometry, NormalKind, Scene, Support,
+    BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, Master, MeshGeometry, Scene, Support,
 };
 use contact::shape::{Coordinates, Directions, LatticeShape, ShapeScene};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -20,21 +20,14 @@ pub const ELASTIC: [f64; 2] = [1000.0, 0.3];
 /// A body that touches an obstacle with its top, in pieces, without supports and loads, in a lattice of 2³ points.
 pub fn scene(mesh: Mesh, obstacle: CounterSurface, friction: f64) -> Scene {
     let (corner, size) = extent(mesh.nodes());
+    let geometry = Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: Some(3) });
     Scene {
         name: "mesh".into(),
-        lower: BodyScene::new(material(ELASTIC), vec![], vec![]),
-        shape: ShapeScene::Lattice(lattice(corner, size, [2; 3])),
-        geometry: Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: Some(3) }),
-        upper: None,
-        counter_surface: obstacle,
-        contact: ContactScene {
-            face: "top".into(),
-            normal: NormalKind::Surface,
-            area: AreaKind::Surface,
-            friction,
-            interference: 0.0,
-            friction_by_region: vec![],
-        },
+        bodies: vec![BodyScene {
+            shape: Some(ShapeScene::Lattice(lattice(corner, size, [2; 3]))),
+            ..BodyScene::new("body", geometry, material(ELASTIC))
+        }],
+        contacts: vec![ContactScene::new(BodyFace::new(0, "top"), Master::Obstacle(obstacle), friction)],
     }
 }
 
@@ -77,9 +70,17 @@ pub fn pushed(face: &str, traction: Point) -> Load {
 
 /// The mesh of a scene.
 pub fn mesh_of(scene: &Scene) -> &Mesh {
-    match &scene.geometry {
+    match &scene.bodies[0].geometry {
         Geometry::Mesh(geometry) => &geometry.mesh,
-        Geometry::Blocks(_) => unreachable!("scenes here are of meshes"),
+        Geometry::Block(_) => unreachable!("scenes here are of meshes"),
+    }
+}
+
+/// The lattice of a scene.
+pub fn lattice_of(scene: &mut Scene) -> &mut LatticeShape {
+    match &mut scene.bodies[0].shape {
+        Some(ShapeScene::Lattice(lattice)) => lattice,
+        _ => unreachable!("scenes here have lattices"),
     }
 }
 

@@ -14,8 +14,8 @@ use nonsmooth::{ConstraintEvaluation, ConstraintKind, NonsmoothObjective, Reques
 fn objective(mesh: Mesh, top: f64, limits: &[Limit]) -> ContactObjective {
     let plane = CounterSurface::TiltedPlane { point: [0.0, 0.0, top], normal: [0.0, 0.0, 1.0] };
     let mut scene = scene(mesh, plane, 0.0);
-    scene.lower.supports = vec![held("bottom", [true; 3])];
-    scene.lower.loads = vec![pushed("x1-max", [-1.0, 0.0, 1.0])];
+    scene.bodies[0].supports = vec![held("bottom", [true; 3])];
+    scene.bodies[0].loads = vec![pushed("x1-max", [-1.0, 0.0, 1.0])];
     let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
     ContactObjective::new(shape, Measure::Pressure(norm), limits).unwrap()
@@ -29,7 +29,7 @@ fn constraints(objective: &ContactObjective, at: &Vector) -> ConstraintEvaluatio
 fn relative_volume(objective: &ContactObjective, at: &Vector) -> f64 {
     let problem = objective.solver().problem();
     let volume = |positions: &[[f64; 3]]| elements::volume(&problem.bodies[0].mesh, positions);
-    volume(&problem.map.positions(at.as_slice())) / volume(problem.bodies[0].mesh.nodes())
+    volume(&problem.map.positions(at.as_slice())[0]) / volume(problem.bodies[0].mesh.nodes())
 }
 
 /// Steps in units of the direction, whose entries are up to 1 mm.

@@ -1,11 +1,11 @@
 //! The last resort of direct condensation, driven alone: cone programs lead to the states that Newton's method finds.
 
-use crate::common::start_height;
+use crate::common::{change_counter_surface, start_height};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::direct::{DirectSolver, by_cone_programs};
 use contact::equilibrium::{ContactProblem, ContactRows, ContactSolver};
-use contact::scene::{Blocks, BodyScene, CounterSurface, Geometry, Load, Scene, Support, hertz, signorini};
+use contact::scene::{CounterSurface, Load, Scene, hertz, signorini};
 use contact::shape::ShapeBounds;
 use std::sync::Arc;
 use testset::kit::wavy;
@@ -69,16 +69,11 @@ fn the_last_resort_finds_what_continuation_loses() {
     let height = 1.9529823602574257;
     let size = [1.0869691108670812e1, 1.5321819622461916e-1];
     let traction = [-1.3464520863463144e-3, 4.64168935388694e-3, 1.2777216699740348e-2];
-    let scene = Scene {
-        geometry: Geometry::Blocks(Blocks { size, bricks: [8, 4, 8], subdomains: [1; 3] }),
-        lower: BodyScene::new(
-            Material::new(2.625089606217722e5, 4.9751755389752494e-1).unwrap(),
-            vec![Support::new(BlockFace::X1Min, [true, true, false])],
-            vec![Load::traction(BlockFace::Bottom, traction)],
-        ),
-        counter_surface: CounterSurface::Plane { height },
-        ..signorini().unwrap().with_friction(1.5489828758814062)
-    };
+    let mut scene = signorini().unwrap().with_friction(1.5489828758814062).with_bricks([8, 4, 8], [1; 3]);
+    scene = scene.with_blocks(|block| block.size = size);
+    change_counter_surface(&mut scene, |_| CounterSurface::Plane { height });
+    scene.bodies[0].material = Material::new(2.625089606217722e5, 4.9751755389752494e-1).unwrap();
+    scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, traction)];
     let scene = scene.with_heights(|heights| {
         heights.start_height = height;
         heights.control_points = [4, 4];

@@ -33,7 +33,7 @@ fn scenes() -> Vec<Scene> {
             [(0.3, Formulation::Standard), (0.0, Formulation::Standard), (0.3, Formulation::MeanDilatation)]
         {
             let mut scene = scene.clone().with_friction(friction);
-            for body in scene.bodies_mut() {
+            for body in &mut scene.bodies {
                 body.material = body.material.with_formulation(formulation);
             }
             scenes.push(scene);
@@ -46,14 +46,14 @@ fn scenes() -> Vec<Scene> {
 fn both_solvers_give_the_same_fields() {
     for scene in scenes() {
         let control = bent(&scene);
-        let label = format!("{} friction {}", scene.name, scene.contact.friction);
+        let label = format!("{} friction {}", scene.name, scene.friction());
         let (torn, direct) = [SolverKind::Newton, SolverKind::Direct]
             .map(|kind| {
                 let (shape, state, _) = solve(scene.clone(), kind, Some(control.clone()));
                 shape.fields(&state).unwrap()
             })
             .into();
-        let bodies = if scene.upper.is_some() { 2 } else { 1 };
+        let bodies = if scene.bodies.len() > 1 { 2 } else { 1 };
         assert_eq!((torn.bodies.len(), direct.bodies.len()), (bodies, bodies));
         for (body, (first, second)) in torn.bodies.iter().zip(&direct.bodies).enumerate() {
             let displacement =
@@ -81,8 +81,8 @@ fn both_solvers_give_the_same_fields() {
         assert!(relative_difference(&contact[0].pressure, &contact[1].pressure) < 1e-10);
         assert!(relative_difference(&contact[0].remaining_gap, &contact[1].remaining_gap) < 1e-9);
         assert_eq!(contact[0].status, contact[1].status);
-        assert_eq!(contact[0].traction.is_some(), scene.contact.friction > 0.0);
-        assert_eq!(contact[0].slip.is_some(), scene.contact.friction > 0.0);
+        assert_eq!(contact[0].traction.is_some(), scene.friction() > 0.0);
+        assert_eq!(contact[0].slip.is_some(), scene.friction() > 0.0);
     }
 }
 
@@ -128,12 +128,12 @@ fn every_layer_passes_on_what_acts_beyond_it() {
                 let force = section_force(&fields.bodies[0], &bodies[0], layer)[2];
                 assert!((force / -contact - 1.0).abs() < 1e-9, "{kind:?} layer {layer}: {force} {contact}");
             }
-            if scene.upper.is_none() {
+            if scene.bodies.len() == 1 {
                 // 3000 MPa on 100 mm × 100 mm.
                 assert!((contact / 3e7 - 1.0).abs() < 1e-9, "{contact}");
                 continue;
             }
-            let grid = shape.problem().scene.blocks().unwrap().grid();
+            let grid = shape.problem().scene.bodies[0].block().unwrap().grid();
             let height = |j: usize, k: usize| fields.bodies[1].positions[grid.node([BRICKS, j, k])][2];
             // −2000 MPa on the top of 10 mm × 10 mm and on the share of the side above the layer.
             for layer in 0..6 {
@@ -166,7 +166,7 @@ fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
     // Bricks of the flat start are boxes: the stress is trilinear at most and its mean is the value at the centre.
     for formulation in [Formulation::Standard, Formulation::MeanDilatation] {
         let mut scene = signorini().unwrap();
-        scene.lower.material = scene.lower.material.with_formulation(formulation);
+        scene.bodies[0].material = scene.bodies[0].material.with_formulation(formulation);
         for kind in [SolverKind::Newton, SolverKind::Direct] {
             let (shape, state, _) = solve(scene.clone(), kind, None);
             let fields = shape.fields(&state).unwrap();
@@ -186,7 +186,7 @@ fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
 fn contact_fields_obey_the_contact_law() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
         let (shape, state, control) = solve(scene.clone(), SolverKind::Newton, Some(bent(&scene)));
-        let (problem, friction) = (shape.problem(), scene.contact.friction);
+        let (problem, friction) = (shape.problem(), scene.friction());
         let Fields { bodies, contact } = shape.fields(&state).unwrap();
         let largest = contact.pressure.iter().copied().fold(0.0, f64::max);
         let (traction, slip) = (contact.traction.as_ref().unwrap(), contact.slip.as_ref().unwrap());
@@ -203,12 +203,12 @@ fn contact_fields_obey_the_contact_law() {
                 ContactStatus::Slip => assert!(tangential > 0.99 * friction * pressure),
             }
             // The gap that is left is the distance of the deformed surfaces along e₃ (the contact normal of the model).
-            let above = match (bodies.get(1), problem.boundary.points[node].sides.get(1)) {
-                (Some(upper), Some(side)) => {
-                    let index = side.node as usize;
-                    upper.positions[index][2] + upper.displacement[index][2]
-                }
-                _ => contact.position[node][2] + contact.gap[node],
+            let above = if let Some(upper) = bodies.get(1) {
+                let sides = problem.boundary.points[node].sides.iter().zip(&state.rows.nodes[node].weights).skip(1);
+                let place = |index: usize| upper.positions[index][2] + upper.displacement[index][2];
+                sides.map(|(side, weight)| -weight * place(side.node as usize)).sum()
+            } else {
+                contact.position[node][2] + contact.gap[node]
             };
             let deformed = contact.position[node][2] + contact.displacement[node][2];
             assert!((above - deformed - contact.remaining_gap[node]).abs() < 1e-9, "{node}");
@@ -236,11 +236,12 @@ fn position_sensitivities_are_what_the_subgradient_is_made_of() {
         let along = |change: Vec<f64>| -> f64 {
             let changes = [change];
             let velocities = shape.problem().map.velocities(&changes);
-            let node = |(node, sensitivity): (usize, &[f64; 3])| {
-                let velocity = velocities.at(node as u32, 0);
+            let node = |body: usize, (node, sensitivity): (usize, &[f64; 3])| {
+                let velocity = velocities.at(body, node as u32, 0);
                 (0..3).map(|axis| velocity[axis] * sensitivity[axis]).sum::<f64>()
             };
-            positions.iter().enumerate().map(node).sum()
+            let nodes = |body: usize| positions[shape.problem().map.nodes(body)].iter().enumerate();
+            [0, 1].map(|body| nodes(body).map(|own| node(body, own)).sum::<f64>()).into_iter().sum()
         };
         let size = subgradient.amax();
         for index in [0, 7, 20, 35] {

@@ -1,5 +1,6 @@
 //! Plates and rods on total FETI: the state is that of direct condensation.
 
+use crate::common::change_counter_surface;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::linear::vector::{add_scaled, norm};
@@ -18,8 +19,8 @@ fn plates_one_to_a_hundred_and_rods_are_solved() {
             heights.bounds.minimum_height = 0.5 * height;
             heights.bounds.volume = [0.8e4 * height, 1.2e4 * height];
         });
-        scene.counter_surface = CounterSurface::Plane { height: 1.00001 * height };
-        scene.lower.loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, pressure])];
+        change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 1.00001 * height });
+        scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, pressure])];
         let solve = |kind| {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
             let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();

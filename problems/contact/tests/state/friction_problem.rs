@@ -59,6 +59,6 @@ fn a_solved_state_satisfies_the_equations_and_the_law() {
                 assert!((power - bound * length).abs() <= 1e-9 * total * (length + 1e-6), "{power} {bound} {length}");
             }
         }
-        assert!(friction.iter().all(|value| *value == shape.problem().scene.contact.friction));
+        assert!(friction.iter().all(|value| *value == shape.problem().scene.friction()));
     }
 }

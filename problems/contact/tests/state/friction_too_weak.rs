@@ -1,35 +1,32 @@
 //! Bodies that only friction could hold: where contact cannot build up normal forces, the refusal has a proof.
 
+use crate::common::{change_counter_surface, set_upper_block};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::direct::{DirectSolver, resistance};
 use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::error::ContactError;
-use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, signorini};
+use contact::scene::{CounterSurface, Load, Scene, Support, signorini};
 use nonsmooth::{Accuracy, OracleError, StateSolver, Vector};
 use proptest::prelude::*;
 use std::sync::Arc;
 
 /// A block of 100 mm whose bottom is held along x₃ only, beneath an obstacle, pushed at one side.
 fn pushed(bricks: usize, friction: f64, ratio: f64, obstacle: CounterSurface, traction: [f64; 3]) -> Scene {
-    let scene = Scene {
-        lower: BodyScene::new(
-            Material::new(1e4, ratio).unwrap(),
-            vec![Support::new(BlockFace::Bottom, [false, false, true])],
-            vec![Load::traction(BlockFace::X1Max, traction)],
-        ),
-        counter_surface: obstacle,
-        ..signorini().unwrap()
-    };
+    let mut scene = signorini().unwrap();
+    change_counter_surface(&mut scene, |_| obstacle.clone());
+    let body = &mut scene.bodies[0];
+    body.material = Material::new(1e4, ratio).unwrap();
+    body.supports = vec![Support::new(BlockFace::Bottom, [false, false, true])];
+    body.loads = vec![Load::traction(BlockFace::X1Max, traction)];
     scene.with_bricks([bricks; 3], [1; 3]).with_friction(friction)
 }
 
 /// The obstacle as a second body, which holds the first one.
 fn between_bodies(mut scene: Scene) -> Scene {
-    let supports = vec![Support::new(BlockFace::Top, [true; 3])];
-    let body = BodyScene::new(scene.lower.material, supports, vec![]);
-    scene.upper = Some(UpperBody { body, top: 200.0 });
+    let (material, supports) = (scene.bodies[0].material, vec![Support::new(BlockFace::Top, [true; 3])]);
+    set_upper_block(&mut scene, 200.0, material, supports, vec![]);
     scene
 }
 
@@ -78,7 +75,7 @@ fn loads_in_equilibrium_need_no_friction() {
     for ratio in [0.3, 0.499, 0.4999999] {
         let scene = pushed(2, 0.3, ratio, CounterSurface::Plane { height: 101.0 }, [0.0, 0.0, 0.01]);
         let mut scene = scene.with_blocks(|blocks| (blocks.size, blocks.bricks) = ([1.0; 2], [2, 2, 24]));
-        scene.lower.loads.push(Load::traction(BlockFace::X1Min, [0.0, 0.0, -0.01]));
+        scene.bodies[0].loads.push(Load::traction(BlockFace::X1Min, [0.0, 0.0, -0.01]));
         let shape = ContactShape::new(scene, SolverKind::Auto).unwrap();
         if let Err(OracleError::Failed(error)) = shape.solve(&Vector::from_element(36, 100.0), None, Accuracy::TIGHTEST)
         {
@@ -150,7 +147,7 @@ proptest! {
             scene = between_bodies(scene);
         }
         if second == 1 {
-            scene.lower.supports.push(Support::new(BlockFace::X2Min, [false, true, false]));
+            scene.bodies[0].supports.push(Support::new(BlockFace::X2Min, [false, true, false]));
         }
         let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).unwrap())).unwrap();
         let controls = vec![100.0; 36];

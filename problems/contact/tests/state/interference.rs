@@ -1,6 +1,6 @@
 //! Interference of the bodies before loading.
 
-use crate::common::bent;
+use crate::common::{bent, change_counter_surface};
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactProblem;
@@ -13,13 +13,13 @@ const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 /// Bodies that nothing but their interference presses.
 fn pressed(mut scene: Scene, interference: f64) -> Scene {
     scene = scene.with_bricks([4; 3], [2; 3]);
-    scene.lower.loads.clear();
-    scene.lower.supports.push(Support::new("bottom", [false, false, true]));
-    if let Some(upper) = &mut scene.upper {
-        upper.body.loads.clear();
-        upper.body.supports.push(Support::new("top", [false, false, true]));
+    scene.bodies[0].loads.clear();
+    scene.bodies[0].supports.push(Support::new("bottom", [false, false, true]));
+    if let Some(upper) = scene.bodies.get_mut(1) {
+        upper.loads.clear();
+        upper.supports.push(Support::new("top", [false, false, true]));
     }
-    scene.contact.interference = interference;
+    scene.contacts[0].interference = interference;
     scene
 }
 
@@ -30,7 +30,7 @@ fn interference_along_x3_is_a_counter_surface_moved_down() {
     for kind in KINDS {
         let with = pressed(scene.clone(), 1.5);
         let mut without = pressed(scene.clone(), 0.0);
-        without.counter_surface = without.counter_surface.moved([0.0, 0.0, -1.5]);
+        change_counter_surface(&mut without, |surface| surface.moved([0.0, 0.0, -1.5]));
         let [with, without] = [with, without].map(|scene| {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
             assert!(shape.problem().start_rows().nodes.iter().any(|node| node.gap < 0.0));
@@ -49,7 +49,7 @@ fn interference_along_x3_is_a_counter_surface_moved_down() {
 #[test]
 fn states_with_interference_have_the_derivatives_of_differences() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
-        let interference = if scene.upper.is_some() { 0.1 } else { 3.0 };
+        let interference = if scene.bodies.len() > 1 { 0.1 } else { 3.0 };
         for kind in KINDS {
             let scene = pressed(scene.clone(), interference);
             let at = bent(&scene);

@@ -1,5 +1,6 @@
 //! Nearly incompressible bodies take about as many products with F as compressible ones, and both solvers agree.
 
+use crate::common::{change_counter_surface, set_top};
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
@@ -11,7 +12,7 @@ use nonsmooth::{Accuracy, StateSolver};
 /// A preset with all bodies of one Poisson's ratio and formulation.
 fn scene(preset: Scene, [bricks, subdomains]: [usize; 2], ratio: f64, formulation: Formulation) -> Scene {
     let mut scene = preset.with_bricks([bricks; 3], [subdomains; 3]);
-    for body in scene.bodies_mut() {
+    for body in &mut scene.bodies {
         let young = body.material.young_modulus();
         body.material = Material::new(young, ratio).unwrap().with_formulation(formulation);
     }
@@ -80,16 +81,13 @@ fn layer(ratio: f64, formulation: Formulation) -> Scene {
         heights.bounds.minimum_height = 0.5;
         heights.bounds.volume = [80.0, 120.0];
     });
-    scene.lower.material = Material::new(100.0, ratio).unwrap().with_formulation(formulation);
-    for support in scene.lower.supports.iter_mut().filter(|support| support.face == BlockFace::Bottom.name()) {
+    scene.bodies[0].material = Material::new(100.0, ratio).unwrap().with_formulation(formulation);
+    for support in scene.bodies[0].supports.iter_mut().filter(|support| support.face == BlockFace::Bottom.name()) {
         *support = Support::new(BlockFace::Bottom, [true; 3]);
     }
-    scene.counter_surface = CounterSurface::Sphere { apex: 1.0, radius: 100.0, centre: [0.0; 2] };
-
-    if let Some(upper) = &mut scene.upper {
-        upper.top = 8.0;
-        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
-    }
+    change_counter_surface(&mut scene, |_| CounterSurface::Sphere { apex: 1.0, radius: 100.0, centre: [0.0; 2] });
+    set_top(&mut scene, 8.0);
+    scene.bodies[1].loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
     scene
 }
 

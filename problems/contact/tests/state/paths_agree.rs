@@ -1,6 +1,6 @@
 //! Independent paths give the same state: TFETI against direct condensation, several tearings and numbers of threads.
 
-use crate::common::bent;
+use crate::common::{bent, change_counter_surface};
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};
@@ -141,9 +141,9 @@ fn warm_start_ends_at_the_same_state() {
 #[test]
 fn a_motion_without_jumps_changes_no_force() {
     let mut scene = signorini().unwrap().with_friction(0.0);
-    scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true, false, true])];
-    scene.lower.loads = vec![Load::traction(BlockFace::X2Max, [0.0, 0.0, 3000.0])];
-    scene.counter_surface = CounterSurface::Sphere { apex: 100.1, radius: 1e4, centre: [0.0; 2] };
+    scene.bodies[0].supports = vec![Support::new(BlockFace::Bottom, [true, false, true])];
+    scene.bodies[0].loads = vec![Load::traction(BlockFace::X2Max, [0.0, 0.0, 3000.0])];
+    change_counter_surface(&mut scene, |_| CounterSurface::Sphere { apex: 100.1, radius: 1e4, centre: [0.0; 2] });
     let (_, torn) = solve(scene.clone(), SolverKind::Newton, 4, 2);
     let (_, direct) = solve(scene, SolverKind::Direct, 4, 2);
     assert!(torn.forces.total_normal_force() > 0.0);

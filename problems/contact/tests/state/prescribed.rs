@@ -1,5 +1,6 @@
 //! Displacements that supports prescribe: closed forms, two solvers, units, conflicts.
 
+use crate::common::change_counter_surface;
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
@@ -25,7 +26,7 @@ fn solve(scene: &Scene, kind: SolverKind) -> (ContactShape, ContactState) {
 /// The Hertz example, pressed by its top instead of by loads.
 fn pressed_hertz(friction: f64) -> Scene {
     let mut scene = hertz().unwrap().with_bricks([4; 3], [2; 3]).with_friction(friction);
-    let upper = &mut scene.upper.as_mut().unwrap().body;
+    let upper = &mut scene.bodies[1];
     upper.loads.clear();
     upper.supports.push(moved(BlockFace::Top, [None, None, Some(-0.05)]));
     scene
@@ -34,21 +35,21 @@ fn pressed_hertz(friction: f64) -> Scene {
 /// The wavy obstacle, with the block pushed into it and along it by its bottom.
 fn pushed_signorini(friction: f64) -> Scene {
     let mut scene = signorini().unwrap().with_bricks([6; 3], [2; 3]).with_friction(friction);
-    scene.lower.loads.clear();
-    scene.lower.supports = vec![moved(BlockFace::Bottom, [Some(0.4), Some(-0.2), Some(2.5)])];
+    scene.bodies[0].loads.clear();
+    scene.bodies[0].supports = vec![moved(BlockFace::Bottom, [Some(0.4), Some(-0.2), Some(2.5)])];
     scene
 }
 
 /// A bar without lateral strain, free to slide, pressed by its foot against a plane at a gap.
 fn bar(displacement: f64, gap: f64) -> Scene {
     let mut scene = signorini().unwrap().with_bricks([3, 3, 4], [1, 1, 2]).with_friction(0.0);
-    scene.lower.material = Material::new(1.1e5, 0.0).unwrap();
-    scene.lower.loads.clear();
-    scene.lower.supports = vec![
+    scene.bodies[0].material = Material::new(1.1e5, 0.0).unwrap();
+    scene.bodies[0].loads.clear();
+    scene.bodies[0].supports = vec![
         moved(BlockFace::X1Min, [Some(0.0), Some(0.0), None]),
         moved(BlockFace::Bottom, [None, None, Some(displacement)]),
     ];
-    scene.counter_surface = CounterSurface::Plane { height: 100.0 + gap };
+    change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 100.0 + gap });
     scene
 }
 
@@ -89,16 +90,16 @@ fn assert_same(a: &ContactState, b: &ContactState, words: &str) {
 
 fn scenes() -> Vec<(&'static str, Scene)> {
     let mut tilted = pushed_signorini(0.3);
-    tilted.contact.normal = NormalKind::Surface;
+    tilted.contacts[0].normal = NormalKind::Surface;
     let mut loaded = pressed_hertz(0.3);
-    loaded.upper.as_mut().unwrap().body.loads = hertz().unwrap().upper.unwrap().body.loads[1..].to_vec();
+    loaded.bodies[1].loads = hertz().unwrap().bodies[1].loads[1..].to_vec();
     // The lower nodes of the edge are held where the upper ones are free.
     let mut lower = pressed_hertz(0.3);
-    lower.lower.supports[2] = moved(BlockFace::Bottom, [None, None, Some(0.02)]);
-    lower.upper.as_mut().unwrap().body.supports[2] = moved(BlockFace::Top, [Some(0.03), Some(0.01), Some(-0.02)]);
-    lower.upper.as_mut().unwrap().body.supports.drain(..2);
-    lower.lower.supports.push(moved(BlockFace::X2Max, [Some(0.01), None, None]));
-    lower.lower.supports.remove(0);
+    lower.bodies[0].supports[2] = moved(BlockFace::Bottom, [None, None, Some(0.02)]);
+    lower.bodies[1].supports[2] = moved(BlockFace::Top, [Some(0.03), Some(0.01), Some(-0.02)]);
+    lower.bodies[1].supports.drain(..2);
+    lower.bodies[0].supports.push(moved(BlockFace::X2Max, [Some(0.01), None, None]));
+    lower.bodies[0].supports.remove(0);
     vec![
         ("hertz", pressed_hertz(0.0)),
         ("hertz with friction", pressed_hertz(0.3)),
@@ -128,12 +129,14 @@ fn both_solvers_find_one_state_with_all_its_displacements() {
 
 #[test]
 fn forces_scale_with_the_modulus_and_not_with_anything_else() {
-    for (words, scene) in scenes().into_iter().filter(|(_, scene)| scene.bodies().all(|(_, b)| b.loads.is_empty())) {
+    for (words, scene) in
+        scenes().into_iter().filter(|(_, scene)| scene.bodies.iter().all(|body| body.loads.is_empty()))
+    {
         for kind in [SolverKind::Newton, SolverKind::Direct] {
             let (_, one) = solve(&scene, kind);
             for factor in [1e-9, 1e9] {
                 let mut other = scene.clone();
-                for body in other.bodies_mut() {
+                for body in &mut other.bodies {
                     let material = body.material;
                     body.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
                 }
@@ -152,8 +155,8 @@ fn a_body_carried_away_has_no_forces() {
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         for lift in [-3.0, 0.0] {
             let mut scene = bar(lift, 0.5);
-            scene.lower.supports[1] = moved(BlockFace::Bottom, [Some(0.0), Some(0.0), Some(lift)]);
-            scene.lower.supports.remove(0);
+            scene.bodies[0].supports[1] = moved(BlockFace::Bottom, [Some(0.0), Some(0.0), Some(lift)]);
+            scene.bodies[0].supports.remove(0);
             let (shape, state) = solve(&scene, kind);
             assert_eq!(state.forces.total_normal_force(), 0.0, "{kind:?}");
             assert_eq!(state.load > 0.0, lift != 0.0, "{kind:?}");
@@ -167,19 +170,19 @@ fn a_body_carried_away_has_no_forces() {
 #[test]
 fn supports_that_contradict_each_other_are_refused() {
     let mut scene = pressed_hertz(0.0);
-    scene.lower.supports[2] = moved(BlockFace::Bottom, [Some(0.1), None, Some(0.0)]);
+    scene.bodies[0].supports[2] = moved(BlockFace::Bottom, [Some(0.1), None, Some(0.0)]);
     let error = ContactProblem::new(scene.clone()).unwrap_err().to_string();
     assert!(error.contains("lower.supports[2]") && error.contains("lower.supports[0]"), "{error}");
-    scene.lower.supports[0] = moved(BlockFace::X1Min, [Some(0.1), None, None]);
+    scene.bodies[0].supports[0] = moved(BlockFace::X1Min, [Some(0.1), None, None]);
     ContactProblem::new(scene.clone()).unwrap();
     // −u₁ along the outward normal of the face x1-min.
     let normal = |value: f64| Support { face: BlockFace::X1Min.name().into(), held: Held::Normal(value) };
-    scene.lower.supports.push(normal(-0.1));
+    scene.bodies[0].supports.push(normal(-0.1));
     ContactProblem::new(scene.clone()).unwrap();
-    scene.lower.supports[3] = normal(0.1);
+    scene.bodies[0].supports[3] = normal(0.1);
     let error = ContactProblem::new(scene.clone()).unwrap_err().to_string();
     assert!(error.contains("lower.supports[3]") && error.contains("lower.supports[0]"), "{error}");
-    scene.lower.supports[3] = normal(f64::NAN);
+    scene.bodies[0].supports[3] = normal(f64::NAN);
     let error = ContactProblem::new(scene).unwrap_err().to_string();
     assert!(error.contains("lower.supports[3]") && error.contains("finite"), "{error}");
 }
@@ -188,7 +191,7 @@ fn supports_that_contradict_each_other_are_refused() {
 #[test]
 fn nodes_dragged_along_with_friction_are_refused() {
     let mut scene = pushed_signorini(0.0);
-    scene.lower.supports.push(moved(BlockFace::X1Min, [Some(0.4), None, None]));
+    scene.bodies[0].supports.push(moved(BlockFace::X1Min, [Some(0.4), None, None]));
     ContactProblem::new(scene.clone()).unwrap();
     let error = ContactProblem::new(scene.with_friction(0.3)).unwrap_err().to_string();
     assert!(error.starts_with("contact friction") && error.contains("contact node"), "{error}");
@@ -198,13 +201,16 @@ fn nodes_dragged_along_with_friction_are_refused() {
 #[test]
 fn a_body_dragged_along_a_slope_meets_it_where_both_solvers_say() {
     let mut scene = bar(0.0, 0.0);
-    scene.lower.supports = vec![
+    scene.bodies[0].supports = vec![
         moved(BlockFace::X1Min, [Some(0.5), Some(0.0), None]),
         moved(BlockFace::X1Max, [Some(0.5), None, None]),
         moved(BlockFace::Bottom, [None, None, Some(0.0)]),
     ];
-    scene.contact.normal = NormalKind::Surface;
-    scene.counter_surface = CounterSurface::TiltedPlane { point: [0.0, 0.0, 100.0], normal: [0.1, 0.0, 1.0] };
+    scene.contacts[0].normal = NormalKind::Surface;
+    change_counter_surface(&mut scene, |_| CounterSurface::TiltedPlane {
+        point: [0.0, 0.0, 100.0],
+        normal: [0.1, 0.0, 1.0],
+    });
     let [(_, torn), (_, direct)] = [SolverKind::Newton, SolverKind::Direct].map(|kind| solve(&scene, kind));
     assert_same(&torn, &direct, "tilted");
 }

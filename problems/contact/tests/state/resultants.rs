@@ -1,5 +1,6 @@
 //! Balance of loads, contact forces and reactions; the largest stress; what is known before a solve.
 
+use crate::common::change_counter_surface;
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
@@ -20,12 +21,12 @@ fn of(scene: &Scene, kind: SolverKind) -> Resultants {
 fn scenes() -> [Scene; 4] {
     let small = |scene: Scene| scene.with_bricks([4; 3], [2, 1, 2]);
     let mut moved = small(hertz().unwrap());
-    let upper = &mut moved.upper.as_mut().unwrap().body;
+    let upper = &mut moved.bodies[1];
     upper.supports.push(Support { face: "top".into(), held: Held::Components([None, None, Some(-0.05)]) });
     let mut by_normals = small(signorini().unwrap());
-    by_normals.contact.normal = NormalKind::Surface;
+    by_normals.contacts[0].normal = NormalKind::Surface;
     // It holds an edge of the contact face, whose normals have parts along it.
-    by_normals.lower.supports.push(Support::along_normal("x1-max"));
+    by_normals.bodies[0].supports.push(Support::along_normal("x1-max"));
     [small(signorini().unwrap()), small(hertz().unwrap()), moved, by_normals]
 }
 
@@ -60,9 +61,9 @@ fn loads_contact_forces_and_reactions_are_in_balance_and_the_same_for_both_solve
 #[test]
 fn a_pressed_bar_has_reactions_and_stress_by_hand() {
     let mut scene = signorini().unwrap().with_bricks([3; 3], [1; 3]).with_friction(0.0);
-    scene.lower.material = Material::new(1.1e5, 0.0).unwrap();
-    scene.lower.loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 30.0])];
-    scene.counter_surface = CounterSurface::Plane { height: 100.0 };
+    scene.bodies[0].material = Material::new(1.1e5, 0.0).unwrap();
+    scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 30.0])];
+    change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 100.0 });
     for kind in KINDS {
         let found = of(&scene, kind);
         let body = &found.bodies[0];
@@ -71,8 +72,8 @@ fn a_pressed_bar_has_reactions_and_stress_by_hand() {
         let stress = found.largest_stress.unwrap();
         assert!((stress.value - 30.0).abs() < 1e-6, "{stress:?}");
         let mut held = scene.clone();
-        held.lower.loads.clear();
-        held.lower
+        held.bodies[0].loads.clear();
+        held.bodies[0]
             .supports
             .push(Support { face: "bottom".into(), held: Held::Components([None, None, Some(100.0 * 30.0 / 1.1e5)]) });
         let found = of(&held, kind);
@@ -93,7 +94,7 @@ fn a_preview_tells_gaps_supports_motions_and_loads() {
     assert_eq!((upper.free_motions, upper.free_translations), (1, [false, false, true]));
     assert!(upper.load[0] > 0.0 && upper.load[1] == 0.0 && upper.load[2] < 0.0 && lower.load == [0.0; 3]);
     let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
-    scene.contact.interference = 4.0;
+    scene.contacts[0].interference = 4.0;
     let problem = ContactProblem::new(scene).unwrap();
     let preview = problem.preview();
     assert!(preview.gaps[0] < -3.9 && preview.overlapping > 0, "{preview:?}");

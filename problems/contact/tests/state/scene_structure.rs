@@ -1,12 +1,13 @@
 //! What a scene does not need is not there; what cannot be in equilibrium is refused; certificates hold.
 
+use crate::common::{change_counter_surface, set_top};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, ContactStatus};
 use contact::error::{ContactError, SceneError};
 use contact::linear::vector::norm;
-use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
+use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
 use contact::shape::ShapeBounds;
 use contact::tfeti::{TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -104,7 +105,7 @@ fn unchanged_body_is_factored_once() {
 #[test]
 fn a_load_that_pulls_away_is_refused_naming_the_direction() {
     let mut scene = small(signorini().unwrap(), 4, 2);
-    scene.lower.loads[0] = scene.lower.loads[0].scaled(-1.0);
+    scene.bodies[0].loads[0] = scene.bodies[0].loads[0].scaled(-1.0);
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let error = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap_err().to_string();
@@ -116,14 +117,14 @@ fn a_load_that_pulls_away_is_refused_naming_the_direction() {
 /// Two blocks of equal size, the upper one pressed onto the lower, whose base is fixed. Contact holds the upper one.
 fn plates(friction: f64, push: f64) -> Scene {
     let material = Material::new(1000.0, 0.0).unwrap();
-    let loads = vec![Load::traction(BlockFace::Top, [push, 0.0, -1.0])];
-    Scene {
-        name: "plates".into(),
-        lower: BodyScene::new(material, vec![Support::new(BlockFace::Bottom, [true; 3])], vec![]),
-        upper: Some(UpperBody { body: BodyScene::new(material, vec![], loads), top: 20.0 }),
-        counter_surface: CounterSurface::Plane { height: 10.0 },
-        ..small(hertz().unwrap(), 4, 2).with_friction(friction)
+    let mut scene = small(hertz().unwrap(), 4, 2).with_friction(friction);
+    change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 10.0 });
+    let supports = [vec![Support::new(BlockFace::Bottom, [true; 3])], vec![]];
+    let loads = [vec![], vec![Load::traction(BlockFace::Top, [push, 0.0, -1.0])]];
+    for (body, (supports, loads)) in scene.bodies.iter_mut().zip(supports.into_iter().zip(loads)) {
+        (body.material, body.supports, body.loads) = (material, supports, loads);
     }
+    scene
 }
 
 #[test]
@@ -159,12 +160,12 @@ fn unloaded_free_motions_are_grounded() {
 fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
     for (bricks, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {
         let mut scene = signorini().unwrap().with_bricks(bricks, [subdomains; 3]).with_friction(0.0);
-        scene.lower.supports = vec![
+        scene.bodies[0].supports = vec![
             Support::new(BlockFace::Bottom, [false, false, true]),
             Support::new(BlockFace::X2Min, [true, false, false]),
         ];
-        scene.lower.loads = vec![Load::traction(BlockFace::X1Min, [0.0, 0.0, 3000.0])];
-        scene.counter_surface = CounterSurface::Plane { height: 100.001 };
+        scene.bodies[0].loads = vec![Load::traction(BlockFace::X1Min, [0.0, 0.0, 3000.0])];
+        change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 100.001 });
         let force = |kind| {
             let shape = ContactShape::new(scene.clone(), kind).unwrap();
             shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap().forces.total_normal_force()
@@ -187,14 +188,12 @@ fn forces_in_balance_are_never_refused() {
             heights.bounds = ShapeBounds { minimum_height: 0.5, slope: 5.0, volume: [0.0, 10.0] };
         });
         let gap = 1e-6 * 10.0_f64.powf(f64::from(index) / 6.0);
-        scene.counter_surface = CounterSurface::Plane { height: 1.0 + gap };
-        scene.lower.supports.clear();
-        scene.lower.loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 1.0])];
-        if let Some(upper) = &mut scene.upper {
-            upper.body.supports.clear();
-            upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
-            upper.top = 2.0 + gap;
-        }
+        change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 1.0 + gap });
+        scene.bodies[0].supports.clear();
+        scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 1.0])];
+        scene.bodies[1].supports.clear();
+        scene.bodies[1].loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
+        set_top(&mut scene, 2.0 + gap);
         let problem = ContactProblem::new(scene).unwrap();
         if let Err(error) = Configuration::new(&problem, &[1.0; 36]) {
             panic!("gap {gap:e}: {error}");
@@ -209,12 +208,10 @@ fn statics_refuse_what_is_beyond_friction_alone() {
     for (friction, bricks) in [(0.02, [2, 3, 5]), (1e-3, [1; 3]), (0.3, [3; 3])] {
         for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-3] {
             let mut scene = hertz().unwrap().with_bricks(bricks, [1; 3]).with_friction(friction);
-            scene.counter_surface = CounterSurface::Plane { height: 10.0 };
-            scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true; 3])];
-            if let Some(upper) = &mut scene.upper {
-                upper.body.supports.clear();
-                upper.body.loads = vec![Load::traction(BlockFace::Top, [100.0 * friction * share, 0.0, -100.0])];
-            }
+            change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 10.0 });
+            scene.bodies[0].supports = vec![Support::new(BlockFace::Bottom, [true; 3])];
+            scene.bodies[1].supports.clear();
+            scene.bodies[1].loads = vec![Load::traction(BlockFace::Top, [100.0 * friction * share, 0.0, -100.0])];
             let problem = ContactProblem::new(scene).unwrap();
             let refused = Configuration::new(&problem, &[10.0; 36]).map(|_| ());
             let refused = matches!(refused, Err(ContactError::NoEquilibrium { .. }));
@@ -226,8 +223,8 @@ fn statics_refuse_what_is_beyond_friction_alone() {
 #[test]
 fn patch_test_uniform_pressure_with_edge_and_corner_weights() {
     let mut scene = small(signorini().unwrap(), 6, 3);
-    scene.counter_surface = CounterSurface::Plane { height: 100.0 };
-    scene.lower.material = Material::new(1.1e5, 0.0).unwrap();
+    change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 100.0 });
+    scene.bodies[0].material = Material::new(1.1e5, 0.0).unwrap();
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
@@ -257,8 +254,8 @@ fn bad_scenes_are_refused_naming_the_field() {
         Err(error) => assert!(error.to_string().contains(text), "{error}"),
         Ok(_) => panic!("{text} was accepted"),
     };
-    refused(small(signorini().unwrap(), 0, 1), "mesh");
-    refused(small(signorini().unwrap(), 6, 4), "subdomains");
+    refused(small(signorini().unwrap(), 0, 1), "lower.bricks[0]");
+    refused(small(signorini().unwrap(), 6, 4), "lower.subdomains[0]");
     refused(signorini().unwrap().with_friction(-0.1), "friction");
     refused(signorini().unwrap().with_friction(f64::NAN), "friction");
     refused(signorini().unwrap().with_heights(|heights| heights.control_points = [3, 3]), "degree");

@@ -65,7 +65,7 @@ fn solve(scene: &Scene, clusters: Option<usize>, communication: Option<Rank>, me
 /// Bodies that prescribed displacements press and shift.
 fn pressed() -> Scene {
     let mut scene = hertz().unwrap();
-    let upper = &mut scene.upper.as_mut().unwrap().body;
+    let upper = &mut scene.bodies[1];
     upper.loads.clear();
     let held = Held::Components([Some(0.01), Some(0.0), Some(-0.05)]);
     upper.supports = vec![Support { face: "top".into(), held }];

@@ -15,19 +15,19 @@ fn cases() -> [Scene; 3] {
     let scene = || hertz().unwrap().with_bricks([4; 3], [2, 1, 2]);
     let held = |value| Support { face: "top".into(), held: Held::Components([None, None, Some(value)]) };
     let [mut loaded, mut pressed, mut again] = [scene(), scene().with_friction(0.2), scene().with_friction(0.5)];
-    for load in &mut loaded.upper.as_mut().unwrap().body.loads {
+    for load in &mut loaded.bodies[1].loads {
         *load = load.scaled(0.7);
     }
     for (scene, value) in [(&mut loaded, 0.0), (&mut pressed, -0.03), (&mut again, -0.01)] {
-        let body = &mut scene.upper.as_mut().unwrap().body;
+        let body = &mut scene.bodies[1];
         if value != 0.0 {
             body.loads.clear();
         }
         body.supports.push(held(value));
     }
-    pressed.lower.supports[2] = Support { face: "bottom".into(), held: Held::Components([None, None, Some(0.04)]) };
+    pressed.bodies[0].supports[2] = Support { face: "bottom".into(), held: Held::Components([None, None, Some(0.04)]) };
     // Held at rest, a top that is loaded presses nothing: the first case pushes its foot.
-    loaded.lower.supports[2] = Support { face: "bottom".into(), held: Held::Components([None, None, Some(0.02)]) };
+    loaded.bodies[0].supports[2] = Support { face: "bottom".into(), held: Held::Components([None, None, Some(0.02)]) };
     [loaded, pressed, again]
 }
 
@@ -108,9 +108,9 @@ fn processes_take_over_factors_only_where_all_hold_them() {
 #[test]
 fn bodies_of_other_stiffness_are_factored_for_themselves() {
     let [first, mut other, _] = cases();
-    other.lower.material = other.upper.as_ref().unwrap().body.material;
+    other.bodies[0].material = other.bodies[1].material;
     let mut free = first.clone();
-    free.lower.supports.remove(0);
+    free.bodies[0].supports.remove(0);
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let processes = Processes::alone();
         let shapes = [first.clone(), other.clone(), free.clone()].map(|scene| shape(&processes, scene, kind, None));

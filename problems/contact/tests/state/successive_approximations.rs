@@ -103,7 +103,7 @@ fn two_bodies() {
 fn grounded_motion_common_to_both_bodies() {
     // Nothing holds the translation of both bodies along x₂: contact sees only their difference.
     let mut scene = hertz().expect("preset");
-    for body in scene.bodies_mut() {
+    for body in &mut scene.bodies {
         body.supports.retain(|support| support.face != BlockFace::X2Min.name());
     }
     let solved = agrees(&small(scene, 4, 2, 0.3), PreconditionerKind::Dirichlet, true);

@@ -32,7 +32,7 @@ pub fn solid(name: &str, spline: &SplineHeights, plane: f64) -> Result<String, E
         }
     }
     let mut entities = Entities::default();
-    let (bottom, top) = (Rim::of_plane(&mut entities, spline.size(), plane), Rim::of_surface(&mut entities, spline));
+    let (bottom, top) = (Rim::of_plane(&mut entities, spline.ends(), plane), Rim::of_surface(&mut entities, spline));
     let uprights: [Id; 4] =
         std::array::from_fn(|corner| straight(&mut entities, &bottom.corners[corner], &top.corners[corner]));
     let surface = spline_surface(&mut entities, spline);
@@ -80,7 +80,7 @@ impl Corner {
     }
 }
 
-/// The four corners (0, 0), (a, 0), (a, b), (0, b) of a face and the edges from each to the next: counterclockwise from
+/// The four corners of a face, from that with the least coordinates on, and the edges from each to the next: counterclockwise from
 /// above.
 struct Rim {
     corners: [Corner; 4],
@@ -88,8 +88,8 @@ struct Rim {
 }
 
 impl Rim {
-    fn of_plane(entities: &mut Entities, [a, b]: [f64; 2], plane: f64) -> Self {
-        let corners = [[0.0, 0.0], [a, 0.0], [a, b], [0.0, b]].map(|[x1, x2]| Corner::new(entities, [x1, x2, plane]));
+    fn of_plane(entities: &mut Entities, [[a0, a1], [b0, b1]]: [[f64; 2]; 2], plane: f64) -> Self {
+        let corners = [[a0, b0], [a1, b0], [a1, b1], [a0, b1]].map(|[x1, x2]| Corner::new(entities, [x1, x2, plane]));
         let edges = std::array::from_fn(|side| straight(entities, &corners[side], &corners[(side + 1) % 4]));
         Self { corners, edges }
     }

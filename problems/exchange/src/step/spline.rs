@@ -2,11 +2,12 @@
 
 use crate::error::{ExchangeError, all_finite, counted};
 
-/// Heights over the rectangle [0, a] × [0, b] as a tensor product of clamped B-splines.
+/// Heights over the rectangle [0, a] × [0, b], or one moved from there, as a tensor product of clamped B-splines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplineHeights {
     degrees: [usize; 2],
     knots: [Vec<f64>; 2],
+    corner: [f64; 2],
     size: [f64; 2],
     heights: Vec<f64>,
 }
@@ -44,7 +45,13 @@ impl SplineHeights {
         let [n1, n2]: [usize; 2] = std::array::from_fn(|axis| knots[axis].len() - degrees[axis] - 1);
         counted("control heights", n1 * n2, heights.len())?;
         all_finite("control height", &heights)?;
-        Ok(Self { degrees, knots, size, heights })
+        Ok(Self { degrees, knots, corner: [0.0; 2], size, heights })
+    }
+
+    /// The heights over a rectangle with another least corner, mm.
+    #[must_use]
+    pub fn at(self, corner: [f64; 2]) -> Self {
+        Self { corner, ..self }
     }
 
     /// Degree along an axis.
@@ -52,9 +59,9 @@ impl SplineHeights {
         self.degrees[axis]
     }
 
-    /// Lengths a, b, mm.
-    pub(super) fn size(&self) -> [f64; 2] {
-        self.size
+    /// Ends of the rectangle along x₁ and x₂, mm.
+    pub(super) fn ends(&self) -> [[f64; 2]; 2] {
+        std::array::from_fn(|axis| [self.corner[axis], self.corner[axis] + self.size[axis]])
     }
 
     /// Control points per axis.
@@ -72,7 +79,7 @@ impl SplineHeights {
         let (degree, knots) = (self.degrees[axis], &self.knots[axis]);
         let (first, last) = (knots[0], knots[knots.len() - 1]);
         let mean = knots[index + 1..=index + degree].iter().sum::<f64>() / degree as f64;
-        self.size[axis] * (mean - first) / (last - first)
+        self.corner[axis] + self.size[axis] * (mean - first) / (last - first)
     }
 
     /// Distinct knots along an axis, each with its multiplicity.

@@ -7,6 +7,7 @@ use crate::commands::numbers::{number, raised, rounded};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::ending;
 use crate::commands::report::Relief;
+use crate::commands::scene_words;
 use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::SolvedShape;
 use contact::solvers::Usage;
@@ -41,8 +42,8 @@ pub struct SurfaceDifference {
 }
 
 impl Comparison<'_> {
-    fn friction(&self) -> f64 {
-        self.runs[0].objective.solver().problem().scene.contact.friction
+    fn friction(&self) -> String {
+        scene_words::friction(&self.runs[0].objective.solver().problem().scene)
     }
 
     /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where
@@ -57,11 +58,14 @@ impl Comparison<'_> {
         [self.own[0][1].value, self.crossed[0].value]
     }
 
-    /// The distance of the two optimized surfaces over the nodes of the contact boundary.
+    /// The distance of the two optimized surfaces over the nodes of all contact surfaces that controls move.
     pub fn surface_difference(&self) -> SurfaceDifference {
-        let relief = Relief::new(self.runs[0].objective.solver().problem());
-        let map = &self.runs[0].objective.solver().problem().map;
-        let [with, without] = self.own.map(|shapes| relief.outward(&map.positions(shapes[1].controls.as_slice())));
+        let problem = self.runs[0].objective.solver().problem();
+        let reliefs = Relief::all(problem);
+        let [with, without] = self.own.map(|shapes| {
+            let positions = problem.map.positions(shapes[1].controls.as_slice());
+            reliefs.iter().flat_map(|relief| relief.outward(&positions)).collect::<Vec<f64>>()
+        });
         let differences: Vec<f64> = without.iter().zip(&with).map(|(a, b)| a - b).collect();
         let (mean, shape) = mean_and_deviation(&differences);
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
@@ -97,7 +101,7 @@ impl Comparison<'_> {
         let shapes = Group { title: "Shapes in both models", columns, facts: shapes, words: String::new() };
         let lead = self.conclusion();
         let mut rest = vec![
-            Fact::json("friction", &self.friction())?,
+            Fact::json("friction", &self.runs[0].objective.solver().problem().scene.friction())?,
             Fact::json("loss_without_friction_in_the_model", &self.loss())?,
             Fact::json("surface_difference", &self.surface_difference())?,
             Fact::json("evaluations", &self.runs.map(|run| run.report.counts.evaluations))?,

@@ -20,7 +20,7 @@ use contact::error::SceneError;
 use std::path::Path;
 
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
-    let friction = loaded.case.scene.contact.friction;
+    let friction = loaded.case.scene.friction();
     if friction == 0.0 {
         let allowed = "a coefficient > 0 to compare with no friction at all";
         return Err(session.arguments.changes().blame(SceneError::out_of_range("friction", 0, allowed)).into());
@@ -75,17 +75,21 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
 
 /// The two scenes, with friction and without it, each with a folder of its own inside that of the comparison.
 fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScene; 2], SceneError> {
-    let part = |name: &str, friction: f64| {
+    let part = |name: &str, is_frictionless: bool| {
         loaded.changed(|scene| {
-            scene.friction = friction;
-            if friction == 0.0 {
-                scene.contact.regions.clear();
+            if is_frictionless {
+                scene.friction = 0.0;
+                scene.contact.one_mut().into_iter().for_each(|contact| contact.regions.clear());
+                for pair in scene.contact.several_mut() {
+                    pair.friction = None;
+                    pair.regions.clear();
+                }
                 scene.case.iter_mut().for_each(|case| case.friction = None);
             }
             scene.output.folder = folder.map(|folder| folder.folder.path().join(name).display().to_string());
         })
     };
-    Ok([part(COMPARED[0], loaded.case.scene.contact.friction)?, part(COMPARED[1], 0.0)?])
+    Ok([part(COMPARED[0], false)?, part(COMPARED[1], true)?])
 }
 
 /// Refuses runs that cannot be continued, before anything is changed.

@@ -1,5 +1,7 @@
 //! What is exported, and where it comes from.
 
+use crate::commands::scene_words::stem;
+use contact::scene::Scene;
 use serde::Serialize;
 
 /// Where an exported shape comes from.
@@ -15,7 +17,7 @@ pub struct Origin {
 /// A file that is to be written.
 pub struct OutputFile {
     /// Name below the folder.
-    pub name: &'static str,
+    pub name: String,
     pub content: Vec<u8>,
     /// What it holds, in words.
     pub what: String,
@@ -23,7 +25,13 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    pub fn text(name: &'static str, content: String, what: impl Into<String>) -> Self {
-        Self { name, content: content.into_bytes(), what: what.into(), triangles: None }
+    pub fn text(name: impl Into<String>, content: String, what: impl Into<String>) -> Self {
+        Self { name: name.into(), content: content.into_bytes(), what: what.into(), triangles: None }
     }
+}
+
+/// The name of a file of a body: `lower_body.stl`. The body of a mesh alone has always been the lower one here.
+pub fn body_file(scene: &Scene, body: usize, ending: &str) -> String {
+    let stem = if scene.bodies[body].name == "body" { "lower".to_owned() } else { stem(scene, body) };
+    format!("{stem}_body.{ending}")
 }

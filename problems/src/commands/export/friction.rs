@@ -3,10 +3,11 @@
 use crate::commands::export::files::OutputFile;
 use crate::commands::export::shape::failure;
 use crate::commands::failure::Failure;
-use crate::commands::mesh_words;
+use crate::commands::scene_words;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::friction_problem::{FrictionProblem, ROWS};
+use contact::scene::Scene;
 use exchange::matrix_market::{general, symmetric};
 use serde::Serialize;
 
@@ -18,7 +19,7 @@ const MOST_UNKNOWNS: usize = 300_000;
 struct FrictionJson<'a> {
     /// What the numbers mean.
     equations: &'static str,
-    units: &'static str,
+    units: String,
     stiffness: &'static str,
     contact: &'static str,
     load: &'a [f64],
@@ -34,17 +35,34 @@ struct FrictionJson<'a> {
 
 const EQUATIONS: &str = "K u = f + H^T r; w = H u + (g, s1, s2) per contact node; 0 <= r_N, w_N; r_N w_N = 0; |r_T| <= mu r_N; \
                          w_T = -k r_T with k >= 0, k = 0 where |r_T| < mu r_N";
-const UNITS: &str = "K in N/mm; load f in N; gaps g, slips s of prescribed displacements and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component (0 to 2: along x1, x2, x3; at nodes held along other directions, along the free ones)";
+const UNITS: [&str; 2] = [
+    "K in N/mm; load f in N; gaps g, slips s of prescribed displacements and places in mm; areas in mm^2; unknowns: body (",
+    "), node, component (0 to 2: along x1, x2, x3; at nodes held along other directions, along the free ones)",
+];
 
-/// Refuses a mesh whose matrices would be too large.
+/// What the numbers of the lists are, with the names of the bodies.
+fn units(scene: &Scene) -> String {
+    let names = scene.bodies.iter().enumerate().map(|(number, body)| format!("{number} {}", body.name));
+    let names = if scene_words::is_short(scene) { "0 lower, 1 upper".into() } else { names.collect::<Vec<_>>().join(", ") };
+    let [before, after] = UNITS;
+    format!("{before}{names}{after}")
+}
+
+/// Refuses a mesh whose matrices would be too large, and faces that are glued.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] naming the mesh.
 pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
-    let most = FrictionProblem::most_unknowns(problem);
-    let (field, found) = match problem.scene.blocks() {
-        Some(blocks) => ("mesh.bricks", format!("{:?}", blocks.bricks)),
-        None => ("body.mesh", mesh_words::mesh(&problem.scene)),
+    let (most, scene) = (FrictionProblem::most_unknowns(problem), &problem.scene);
+    let tied = (0..scene.contacts.len()).find(|contact| scene.contacts[*contact].is_tied());
+    if let Some(contact) = tied {
+        let allowed = "no glued faces with --friction-problem: its equations are those of contact that may open";
+        return Err(SceneError::out_of_range(format!("contact[{contact}].tied"), true, allowed));
+    }
+    let (field, found) = match scene.bodies[0].block() {
+        _ if !scene_words::is_short(scene) => ("body", scene_words::mesh(scene)),
+        Some(block) => ("mesh.bricks", format!("{:?}", block.bricks)),
+        None => ("body.mesh", scene_words::mesh(scene)),
     };
     let allowed =
         format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
@@ -64,7 +82,7 @@ pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Output
     let contact = general([ROWS * nodes, unknowns], &matrices.contact, &words).map_err(failure)?;
     let lists = FrictionJson {
         equations: EQUATIONS,
-        units: UNITS,
+        units: units(&problem.scene),
         stiffness: "stiffness.mtx",
         contact: "contact.mtx",
         load: &matrices.load,

@@ -38,7 +38,7 @@ struct ExportJson {
 
 #[derive(Debug, Serialize)]
 struct FileJson {
-    file: &'static str,
+    file: String,
     holds: String,
     bytes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -63,15 +63,16 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     };
     let differences = run.filter(|_| options.friction_problem).map_or_else(Vec::new, |run| run.differences);
     problem.admissible.check_shape(&controls)?;
-    let written = controls::written(controls.as_slice(), Layout::of(&problem.scene.shape))?;
+    let written = controls::written(controls.as_slice(), Layout::of(&problem.scene))?;
     let what = "the controls; --controls and --start-controls take the file";
     let mut files = vec![OutputFile::text("controls.json", written, what)];
-    match Block::of(&problem.scene) {
-        Some(block) => files.extend(of_block(block, controls.as_slice(), options)?),
+    let block = Block::of(&problem.scene);
+    match block {
+        Some(block) => files.extend(of_block(&problem, block, controls.as_slice(), options)?),
         None => files.extend(of_mesh(&problem, controls.as_slice(), options)?),
     }
-    if options.msh || (options.is_free() && problem.scene.blocks().is_none()) {
-        files.push(mesh::gmsh_file(&problem, controls.as_slice())?);
+    if options.msh || (options.is_free() && block.is_none()) {
+        files.extend(mesh::gmsh_files(&problem, controls.as_slice())?);
     }
     if options.friction_problem {
         files.extend(friction::matrices(&problem, controls.as_slice())?);
@@ -81,7 +82,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let bytes = files.iter().map(|file| file.content.len() as u64).sum();
     let folder = Folder::create(path, bytes, arguments.files.overwrite)?;
     let describe = |file: &OutputFile| FileJson {
-        file: file.name,
+        file: file.name.clone(),
         holds: file.what.clone(),
         bytes: file.content.len(),
         triangles: file.triangles,
@@ -90,24 +91,44 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder: path.display().to_string(),
         shape: origin,
         differences: differences.iter().map(Difference::to_string).collect(),
-        tolerance: ((options.stl || options.is_free()) && problem.scene.blocks().is_some())
-            .then(|| options.tolerance()),
+        tolerance: ((options.stl || options.is_free()) && block.is_some()).then(|| options.tolerance()),
         files: files.iter().map(describe).collect(),
     };
     let text = arguments.printed(result.to_string(), json(&result)?);
     printed_with_files(text, arguments.json, Some(&folder), |folder| {
         files.iter().try_for_each(|file| match file.name.split_once('/') {
             Some((below, name)) => folder.within(below)?.write(name, &file.content),
-            None => folder.write(file.name, &file.content),
+            None => folder.write(&file.name, &file.content),
         })
     })
 }
 
-/// The files of the shape of a block.
-fn of_block(block: Block<'_>, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
+/// The files of the shape of a block. Other bodies go with it as triangles: those that are no block with a plane as
+/// triangles between the nodes of their meshes.
+fn of_block(
+    problem: &ContactProblem,
+    block: Block<'_>,
+    controls: &[f64],
+    options: &ExportOptions,
+) -> Result<Vec<OutputFile>, Failure> {
     let mut files = Vec::new();
     if options.stl || options.is_free() {
-        files.extend(shape::triangles(block, controls, options.tolerance())?);
+        let (tolerance, positions) = (options.tolerance(), problem.map.positions(controls));
+        files.extend(shape::triangles(block, controls, tolerance)?);
+        for body in 0..problem.bodies.len() {
+            let (own, has_plane) = (body == block.body, block.plane().is_some());
+            match own {
+                true if has_plane => {}
+                true => files.push(mesh::skin(problem, body, &positions)?),
+                false => files.push(match shape::other_block(block, body, (controls, tolerance))? {
+                    Some(file) => file,
+                    None => mesh::skin(problem, body, &positions)?,
+                }),
+            }
+        }
+    }
+    if options.step {
+        block.check_solid()?;
     }
     if options.step || options.is_free() {
         files.extend(shape::splines(block, controls)?);
@@ -118,7 +139,7 @@ fn of_block(block: Block<'_>, controls: &[f64], options: &ExportOptions) -> Resu
     Ok(files)
 }
 
-/// The files of the shape of a mesh.
+/// The files of the shape of a mesh, or of several bodies.
 fn of_mesh(problem: &ContactProblem, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
     if options.step {
         refused("--step", "for the height surface of a block; a mesh has --stl and --msh")?;

@@ -9,7 +9,10 @@ use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::stages::{MeshStage, last_begun, stages};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{Difference, differences, is_below};
+use crate::commands::scene_words;
 use contact::error::SceneError;
+use contact::scene::{Block, BodyScene, CounterSurface, Scene};
+use contact::shape::ShapedFace;
 use nonsmooth::journal::{Entry, RecordedAnswer};
 use nonsmooth::{Journal, Vector};
 use scene_file::{Case, SceneFile, read_text};
@@ -78,14 +81,7 @@ impl KeptRun {
         let path = root.join(SCENE);
         let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
         let of_surface = differences(&own, loaded, |field| is_below(field, &SURFACES))?;
-        let (there, here) = (&own.case.scene, &loaded.case.scene);
-        let other_files = || match () {
-            () if there.counter_surface != here.counter_surface => {
-                Some("the heights of counter_surface differ".to_owned())
-            }
-            () if there.blocks().is_none() && there.geometry != here.geometry => Some("the meshes differ".to_owned()),
-            () => None,
-        };
+        let other_files = || other_files(&own.case.scene, &loaded.case.scene);
         if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(other_files) {
             let [scene, run] = [&path, folder].map(|path| quoted(path.display().to_string()));
             let hint = format!("take its own scene: contact3d {scene} export --run {run} --out DIR2");
@@ -93,11 +89,7 @@ impl KeptRun {
         }
         let mut differences = differences(&own, loaded, |field| !is_below(field, &NO_FRICTION_PROBLEM))?;
         let own = own.case;
-        let bricks = |case: &Case| case.scene.blocks().map_or_else(Vec::new, |blocks| blocks.bricks.to_vec());
-        let [there, here] = [bricks(&last(&own, root, folder)), bricks(&loaded.case)];
-        if there != here {
-            differences.push(Difference::new("mesh.bricks", there, here));
-        }
+        differences.extend(other_bricks(&last(&own, root, folder).scene, &loaded.case.scene));
         let (kind, parts) = if root == folder {
             let places = stages(&own)
                 .into_iter()
@@ -114,7 +106,7 @@ impl KeptRun {
         } else {
             (Kind::Part, vec![folder.to_owned()])
         };
-        Ok(Self { folder: folder.to_owned(), parts, kind, layout: Layout::of(&own.scene.shape), differences })
+        Ok(Self { folder: folder.to_owned(), parts, kind, layout: Layout::of(&own.scene), differences })
     }
 
     /// The shape of an evaluation, or the one that the run has found.
@@ -212,6 +204,40 @@ fn last(case: &Case, root: &Path, folder: &Path) -> Case {
     let of_folder = |stage: &MeshStage| stage.part.folder().is_some_and(|name| root.join(name) == folder);
     let stage = if root == folder { last_begun(case, root) } else { stages(case).into_iter().find(of_folder) };
     stage.map_or_else(|| case.clone(), |stage| stage.case)
+}
+
+/// What differs in the surfaces of scenes whose files agree in their fields: heights and meshes of other files.
+fn other_files(there: &Scene, here: &Scene) -> Option<String> {
+    let obstacle = |scene: &Scene| scene.contacts.iter().map(|contact| contact.obstacle().cloned()).collect::<Vec<_>>();
+    let faces = |body: &BodyScene| {
+        let shaped = body.heights().map(|heights| heights.face);
+        let faces = |block: &Block| {
+            let face = |face, surface: &CounterSurface| (shaped != Some(face)).then(|| surface.clone());
+            let faces = [face(ShapedFace::Bottom, &block.bottom), face(ShapedFace::Top, &block.top)];
+            (block.corner, block.size, faces)
+        };
+        body.block().map(faces)
+    };
+    let meshes = |body: &BodyScene| if body.block().is_some() { None } else { Some(body.geometry.clone()) };
+    let (bodies, others) = (&there.bodies, &here.bodies);
+    if obstacle(there) != obstacle(here) || bodies.iter().map(faces).ne(others.iter().map(faces)) {
+        return Some("the heights of counter_surface differ".to_owned());
+    }
+    bodies.iter().map(meshes).ne(others.iter().map(meshes)).then(|| "the meshes differ".to_owned())
+}
+
+/// The bricks of blocks that a run has other than the scene of the command.
+fn other_bricks(there: &Scene, here: &Scene) -> Vec<Difference> {
+    let bricks = |body: &BodyScene| body.block().map_or_else(Vec::new, |block| block.bricks.to_vec());
+    let field = |body: usize| match scene_words::is_short(here) {
+        true => "mesh.bricks".to_owned(),
+        false => format!("body[{body}].block.bricks"),
+    };
+    let pairs = there.bodies.iter().map(bricks).zip(here.bodies.iter().map(bricks)).enumerate();
+    let found = pairs.filter(|(_, (there, here))| there != here);
+    // Both blocks of the short form have the same bricks.
+    let count = if scene_words::is_short(here) { 1 } else { usize::MAX };
+    found.take(count).map(|(body, (there, here))| Difference::new(&field(body), there, here)).collect()
 }
 
 /// The evaluations of a journal whose value is known.

@@ -52,7 +52,7 @@ impl Identity {
         }
         for (name, file) in scene.files_mut() {
             contents.insert(name.to_owned(), hash(&content(loaded, file)?));
-            *file = name.to_owned();
+            *file = name;
         }
         (scene.optimizer, scene.output) = (OptimizerSection::default(), OutputSection::default());
         Ok(Self { version: env!("CARGO_PKG_VERSION").to_owned(), stage: None, contents, scene })
@@ -117,11 +117,11 @@ impl RunFolder {
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let mut scene = loaded.file.clone();
         for (name, file) in scene.files_mut() {
-            folder.write(name, content(loaded, file)?)?;
-            *file = name.to_owned();
+            folder.write(&name, content(loaded, file)?)?;
+            *file = name;
         }
         folder.write(RUN, kind.file()?)?;
-        let layout = Layout::of(&loaded.case.scene.shape);
+        let layout = Layout::of(&loaded.case.scene);
         folder.write(START, controls::written(initial_controls.as_slice(), layout)?)?;
         // With its scene, the folder holds a run.
         keep_scene(&folder, scene)?;
@@ -135,7 +135,7 @@ impl RunFolder {
     /// [`Failure::Input`] for a journal of another scene or, unless `new_version`, of another version of the program,
     /// and for fewer evaluations than it holds; any [`Failure`] of the folder.
     pub fn reopen(folder: Folder, loaded: &LoadedScene, new_version: bool) -> Result<Self, Failure> {
-        let layout = Layout::of(&loaded.case.scene.shape);
+        let layout = Layout::of(&loaded.case.scene);
         let initial_controls = controls::read(&folder.path().join(START), layout)?;
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let this = Self { folder, identity, initial_controls, resumed: true, new_version };

@@ -36,8 +36,8 @@ pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Option<f64
 
 fn matrix(objective: &ContactObjective) -> Option<Matrix> {
     let scene = &objective.solver().problem().scene;
-    let surface = scene.heights()?.surface().ok()?;
-    Some(bending(&surface, scene.blocks()?.size))
+    let (block, heights) = scene.shaped_block()?;
+    Some(bending(&heights.surface().ok()?, block.size))
 }
 
 /// The shape of least bending that is as good as this one to first order; none where it would hardly bend less, or

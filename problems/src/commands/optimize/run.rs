@@ -7,7 +7,7 @@ use crate::commands::folder::Folder;
 use crate::commands::interrupt::{interrupted, watch_interrupts};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
-use crate::commands::mesh_words::mesh;
+use crate::commands::scene_words::mesh;
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
 use crate::commands::optimize::stages::{Attempt, MeshStage, Part, stages};
 use crate::commands::optimize::ways::{beginning, best, chosen};
@@ -189,7 +189,7 @@ const SERIES: u64 = 40;
 fn room(stages: &[MeshStage], kind: RunKind, series: bool) -> u64 {
     let bytes = stages.iter().map(|stage| {
         let size = SceneSize::of(&stage.case.scene);
-        let nodes = (size.bodies * size.pieces * size.piece_nodes) as u64;
+        let nodes = size.sum(|body| body.pieces * body.piece_nodes) as u64;
         let contact = size.contact_nodes as u64;
         let controls = stage.case.scene.control_count() as u64;
         let restart_data = 3 * NUMBER_BYTES * nodes;

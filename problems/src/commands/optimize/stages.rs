@@ -1,6 +1,7 @@
 //! The runs of an optimization: one, one per growing mesh, one per start, or attempts with a run from the best of them.
 
 use crate::commands::optimize::coarse_net::has_coarse_net;
+use contact::scene::BodyScene;
 use nonsmooth::Journal;
 use scene_file::{Case, MethodName, default_subdomains};
 use std::path::Path;
@@ -75,8 +76,8 @@ fn attempts(case: &Case) -> Vec<Attempt> {
 }
 
 /// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of
-/// its continuation, else one per start. On the meshes of a continuation, the axis with most bricks gets the number
-/// asked for, and the others keep their proportion to it.
+/// its continuation, else one per start. On the meshes of a continuation, the axis with most bricks of all blocks gets
+/// the number asked for, and the others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;
@@ -91,9 +92,10 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
     if meshes.is_empty() {
         return vec![MeshStage { part: Part::Whole, case: case.clone() }];
     }
+    let blocks = case.scene.bodies.iter().filter_map(BodyScene::block);
+    let longest = blocks.flat_map(|block| block.bricks).max().unwrap_or(1);
     let stage = |&bricks: &usize| {
         let case = case.clone().with_blocks(|blocks| {
-            let longest = blocks.bricks.iter().copied().max().unwrap_or(1);
             let scaled = |count: usize| ((count * bricks) as f64 / longest as f64).round().max(1.0) as usize;
             blocks.bricks = blocks.bricks.map(scaled);
             let fits = blocks.bricks.iter().zip(&blocks.subdomains).all(|(mesh, count)| mesh.is_multiple_of(*count));
@@ -129,7 +131,7 @@ mod tests {
         case.optimizer.single = true;
         assert_eq!(parts(&case), [Part::Whole]);
         case.optimizer.continuation = vec![6, 12, 25];
-        let blocks = |stage: &MeshStage| *stage.case.scene.blocks().expect("a block");
+        let blocks = |stage: &MeshStage| stage.case.scene.bodies[0].block().expect("a block").clone();
         let meshes: Vec<_> =
             stages(&case).iter().map(|stage| (blocks(stage).bricks, blocks(stage).subdomains)).collect();
         assert_eq!(meshes, [([6, 6, 2], [2, 2, 1]), ([12, 12, 4], [2, 2, 1]), ([25, 25, 8], [5, 5, 2])]);

@@ -3,16 +3,17 @@
 use crate::commands::case_facts;
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
-use crate::commands::mesh_words;
-use crate::commands::numbers::{exact, number, raised};
+use crate::commands::numbers::{number, raised};
 use crate::commands::optimize::fairness::bending_of;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::optimize::ways::AGREES;
 use crate::commands::report::found_label;
+use crate::commands::scene_words;
 use crate::commands::shape_facts::{self, is_proved};
 use crate::commands::solved_shape::{SolvedShape, solver_facts};
 use contact::plausibility::Warning;
+use contact::scene::Scene;
 use contact::solvers::Usage;
 use nonsmooth::{Certificate, IterationRecord, Report, Vector};
 use scene_file::CaseScene;
@@ -40,13 +41,19 @@ fn course(record: &IterationRecord) -> serde_json::Value {
 fn stage(run: &MeshRun) -> serde_json::Value {
     json!({
         "run": run.part.folder(),
-        "mesh": run.objective.solver().problem().scene.blocks().map(|blocks| blocks.bricks),
+        "mesh": bricks(&run.objective.solver().problem().scene),
         "objective_start": run.report.start_value,
         "objective": run.report.value,
         "evaluations": run.report.counts.evaluations,
         "seconds": run.report.seconds,
         "termination": ending(&run.report),
     })
+}
+
+/// The bricks of the only optimized block, or of the first body; none for a mesh.
+fn bricks(scene: &Scene) -> Option<[usize; 3]> {
+    let block = scene.shaped_block().map(|(block, _)| block).or_else(|| scene.bodies.first()?.block())?;
+    Some(block.bricks)
 }
 
 /// How a run ended.
@@ -144,7 +151,7 @@ impl Ended<'_> {
         let groups = vec![
             pair("", result),
             self.cases(columns.clone())?,
-            Group::new("", vec![scene_fact(self.last)]),
+            Group::new("", scene_words::facts(scene)?),
             self.stages()?,
             self.course()?,
             certificate(report.certificate.as_ref())?,
@@ -212,7 +219,7 @@ impl Ended<'_> {
             let (report, name) = (&run.report, run.part.folder().unwrap_or("from the best".into()).replace('_', " "));
             let scene = &run.objective.solver().problem().scene;
             let values = vec![
-                mesh_words::mesh(scene).into(),
+                scene_words::mesh(scene).into(),
                 report.start_value.into(),
                 report.value.into(),
                 report.counts.evaluations.into(),
@@ -315,15 +322,6 @@ impl Ended<'_> {
         facts.extend(closing_facts(&warnings, &self.left_out, self.processes.as_ref())?);
         Ok(Group::new("", facts))
     }
-}
-
-/// The bodies of the scene.
-fn scene_fact(run: &MeshRun) -> Fact {
-    let scene = &run.objective.solver().problem().scene;
-    let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
-    let (mesh, parts) = (mesh_words::mesh(scene), mesh_words::pieces(scene));
-    let friction = exact(scene.contact.friction);
-    Fact::new("", "scene", format!("{bodies} of {mesh}, {parts}, friction {friction}"), "")
 }
 
 /// The facts of the certificate; its cuts go to a file.

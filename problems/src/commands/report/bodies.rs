@@ -4,9 +4,12 @@ use crate::commands::numbers::number;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::skin::{Skin, extent};
+use crate::commands::scene_words;
 use crate::commands::solved_shape::ContactObjective;
 use contact::equilibrium::ContactProblem;
 use contact::fields::{BodyFields, Fields};
+use contact::scene::Scene;
+use contact::shape::Positions;
 use figures::{
     ColourScales, Figure, FigureError, Map, MapPanel, SolidBody, SolidPanel, Solids, SurfacePanel, Surfaces, View,
     nice_below,
@@ -14,19 +17,24 @@ use figures::{
 
 /// Largest displacement that is drawn, as a share of the largest side of the bodies.
 const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
-/// Largest lift of an upper body, as a share of its largest height.
+/// Largest lift of bodies above others, as a share of their largest height.
 const MAX_LIFT: f64 = 0.25;
 
 /// Von Mises stresses on the deformed bodies, the shapes side by side on one scale: a figure of all bodies, or, where
 /// their materials differ, one per body. Shapes without fields are left out.
 pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Vec<Result<Figure, FigureError>> {
-    match &objective.solver().problem().bodies[..] {
-        [lower, upper] if lower.solid.materials() != upper.solid.materials() => vec![
-            stresses(objective, shapes, ("von_mises_lower", ", lower body", &[0])),
-            stresses(objective, shapes, ("von_mises_upper", ", upper body", &[1])),
-        ],
-        _ => vec![stresses(objective, shapes, ("von_mises", "", &[0, 1]))],
+    let problem = objective.solver().problem();
+    let bodies = &problem.bodies;
+    let all: Vec<usize> = (0..bodies.len()).collect();
+    if bodies.windows(2).all(|pair| pair[0].solid.materials() == pair[1].solid.materials()) {
+        return vec![stresses(objective, shapes, ("von_mises", "", &all))];
     }
+    let alone = |&number: &usize| {
+        let name = format!("von_mises_{}", scene_words::stem(&problem.scene, number));
+        let words = format!(", {}", scene_words::body(&bodies[number].name));
+        stresses(objective, shapes, (&name, &words, &[number]))
+    };
+    all.iter().map(alone).collect()
 }
 
 /// The stresses of the bodies with these numbers.
@@ -37,27 +45,35 @@ fn stresses(
 ) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let seen = || shapes.iter().filter_map(|shape| shape.fields.as_ref().map(|fields| (shape, fields)));
-    let bodies = || seen().flat_map(|(_, fields)| numbers.iter().filter_map(|&number| fields.bodies.get(number)));
+    let bodies = || seen().flat_map(|(_, fields)| numbers.iter().map(|&number| &fields.bodies[number]));
     let sides: [f64; 3] = std::array::from_fn(|axis| bodies().map(|body| side(body, axis)).fold(0.0, f64::max));
     let side_of_all = sides.into_iter().fold(0.0, f64::max);
     let largest =
         bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
     let times = if largest > 0.0 { nice_below(MAX_SHOWN_DISPLACEMENT * side_of_all / largest).max(1.0) } else { 1.0 };
     // A body that is shown alone covers nothing.
-    let both = numbers.len() > 1;
-    let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).filter(|_| both);
-    let upper = upper.map(|body| side(body, 2)).fold(0.0, f64::max);
-    let lift = if upper > 0.0 { nice_below(MAX_LIFT * upper) } else { 0.0 };
+    let surfaces = ContactSurface::all(problem);
+    let is_short = scene_words::is_short(&problem.scene);
+    let towards = |surface: &ContactSurface| if is_short { [0.0, 0.0, 1.0] } else { surface.normal };
+    let places = match numbers {
+        [_] => vec![[0.0; 3]; problem.bodies.len()],
+        _ => apart(&problem.scene, &surfaces, towards),
+    };
+    let moved = seen().flat_map(|(_, fields)| fields.bodies.iter().zip(&places)).filter(|(_, place)| **place != [0.0; 3]);
+    let height = moved.map(|(body, _)| side(body, 2)).fold(0.0, f64::max);
+    let lift = if height > 0.0 { nice_below(MAX_LIFT * height) } else { 0.0 };
     let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
         caption: shape.caption.clone(),
         bodies: numbers
             .iter()
-            .filter_map(|&number| fields.bodies.get(number))
-            .zip([0.0, lift])
-            .map(|(body, lift)| solid(body, times, lift))
+            .map(|&number| solid(&fields.bodies[number], times, places[number].map(|part| lift * part)))
             .collect(),
     };
-    let lifted = if lift > 0.0 { format!(", upper body lifted by {lift} mm") } else { String::new() };
+    let lifted = match lift > 0.0 {
+        true if is_short => format!(", upper body lifted by {lift} mm"),
+        true => format!(", bodies drawn apart by {lift} mm"),
+        false => String::new(),
+    };
     let [a, b, _] = sides.map(number);
     Solids {
         name: name.into(),
@@ -66,10 +82,40 @@ fn stresses(
         unit: "MPa".into(),
         axes: [format!("x₁ ({a} mm)"), format!("x₂ ({b} mm)"), "x₃".into()],
         note: format!("displacements × {times}{lifted}"),
-        view: View::towards(ContactSurface::new(problem).normal),
+        view: View::towards(surfaces.first().map_or([0.0, 0.0, 1.0], |surface| surface.normal)),
         panels: seen().map(panel).collect(),
     }
     .figure()
+}
+
+/// By how much bodies are moved so that contact surfaces are seen: the master of a contact from its slave by a vector
+/// of the slave face. Bodies that are glued stay together.
+pub fn apart(
+    scene: &Scene,
+    surfaces: &[ContactSurface],
+    by: impl Fn(&ContactSurface) -> [f64; 3],
+) -> Vec<[f64; 3]> {
+    let towards = |contact: usize| {
+        surfaces.iter().find(|surface| surface.contact == contact).map_or([0.0; 3], |surface| by(surface))
+    };
+    let mut places: Vec<Option<[f64; 3]>> = vec![None; scene.bodies.len()];
+    for root in 0..places.len() {
+        places[root].get_or_insert([0.0; 3]);
+        let mut grows = true;
+        while std::mem::take(&mut grows) {
+            for (index, contact) in scene.contacts.iter().enumerate() {
+                let Some(master) = contact.master_face() else { continue };
+                let (slave, master, way) = (contact.slave.body, master.body, towards(index));
+                let (to, place) = match (places[slave], places[master]) {
+                    (Some(from), None) => (master, std::array::from_fn(|axis| from[axis] + way[axis])),
+                    (None, Some(from)) => (slave, std::array::from_fn(|axis| from[axis] - way[axis])),
+                    _ => continue,
+                };
+                (places[to], grows) = (Some(place), true);
+            }
+        }
+    }
+    places.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 /// What a contact surface is shown by: heights less their mean, or, for shapes of a lattice, its displacement along the
@@ -82,9 +128,13 @@ pub struct Relief {
 }
 
 impl Relief {
-    pub fn new(problem: &ContactProblem) -> Self {
-        let surface = ContactSurface::new(problem);
-        let positions = &problem.start_positions()[0];
+    /// The reliefs of all contact surfaces that controls move.
+    pub fn all(problem: &ContactProblem) -> Vec<Self> {
+        ContactSurface::shaped(problem).into_iter().map(|surface| Self::new(problem, surface)).collect()
+    }
+
+    fn new(problem: &ContactProblem, surface: ContactSurface) -> Self {
+        let positions = &problem.start_positions()[surface.body];
         let start: Vec<[f64; 3]> = surface.nodes().iter().map(|&node| positions[node as usize]).collect();
         let mut normals = vec![[0.0; 3]; start.len()];
         for facet in surface.faces() {
@@ -102,17 +152,26 @@ impl Relief {
             let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
             *normal = normal.map(|x| x / length);
         }
-        Self { is_height: problem.scene.heights().is_some(), surface, normals, start }
+        let is_height = problem.scene.bodies[surface.body].heights().is_some();
+        Self { is_height, surface, normals, start }
     }
 
-    /// The relief of positions of all nodes, with a caption.
-    pub fn of(&self, caption: &str, positions: &[[f64; 3]]) -> (String, Vec<f64>) {
-        let values = self.outward(positions);
+    /// The relief of positions of the nodes of all bodies, with a caption.
+    pub fn of(&self, caption: &str, positions: &Positions) -> (String, Vec<f64>) {
+        self.captioned(caption, self.outward(positions))
+    }
+
+    fn captioned(&self, caption: &str, values: Vec<f64>) -> (String, Vec<f64>) {
         if self.is_height { above_mean(caption, &values) } else { (caption.to_owned(), values) }
     }
 
     /// Heights, or displacements along the outward normal.
-    pub fn outward(&self, positions: &[[f64; 3]]) -> Vec<f64> {
+    pub fn outward(&self, positions: &Positions) -> Vec<f64> {
+        self.outward_of(&positions[self.surface.body])
+    }
+
+    /// As [`outward`](Self::outward), of the positions of the nodes of its body.
+    fn outward_of(&self, positions: &[[f64; 3]]) -> Vec<f64> {
         let nodes = self.surface.nodes().iter().map(|&node| positions[node as usize]);
         if self.is_height {
             return nodes.map(|x| x[2]).collect();
@@ -143,47 +202,50 @@ fn above_mean(caption: &str, heights: &[f64]) -> (String, Vec<f64>) {
 
 /// The relief of a shape; none for a shape without fields.
 fn relief_of(relief: &Relief, shape: &ShownShape<'_>) -> Option<(String, Vec<f64>)> {
-    Some(relief.of(&shape.caption, &shape.fields.as_ref()?.bodies.first()?.positions))
+    let body = shape.fields.as_ref()?.bodies.get(relief.surface.body)?;
+    Some(relief.captioned(&shape.caption, relief.outward_of(&body.positions)))
 }
 
 /// Relief of the contact surface side by side on one scale; shapes without fields are left out.
-pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+pub fn surfaces(
+    objective: &ContactObjective,
+    relief: &Relief,
+    shapes: &[ShownShape<'_>],
+) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let relief = Relief::new(problem);
     let panel = |(caption, heights): (String, Vec<f64>)| SurfacePanel {
         caption,
         points: relief.surface.plan().into_iter().zip(heights).map(|([x1, x2], height)| [x1, x2, height]).collect(),
         faces: relief.surface.faces(),
     };
     Surfaces {
-        name: "surface".into(),
-        title: format!("{}: contact surface of the lower body, without load", problem.scene.name),
+        name: format!("surface{}", relief.surface.suffix),
+        title: format!("{}: {}, without load", problem.scene.name, relief.surface.owner),
         quantity: relief.quantity().into(),
         unit: "mm".into(),
-        panels: shapes.iter().filter_map(|shape| relief_of(&relief, shape)).map(panel).collect(),
+        panels: shapes.iter().filter_map(|shape| relief_of(relief, shape)).map(panel).collect(),
     }
     .figure()
 }
 
 /// Relief of the contact surface seen along its normal, with lines of equal value.
-pub fn surface_map(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+pub fn surface_map(
+    objective: &ContactObjective,
+    relief: &Relief,
+    shapes: &[ShownShape<'_>],
+) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let relief = Relief::new(problem);
     let panel =
         |(caption, values)| MapPanel { caption, points: relief.surface.plan(), faces: relief.surface.faces(), values };
     Map {
-        name: "surface_map".into(),
-        title: format!(
-            "{}: contact surface of the lower body, lines of equal {}",
-            problem.scene.name,
-            relief.quantity()
-        ),
+        name: format!("surface_map{}", relief.surface.suffix),
+        title: format!("{}: {}, lines of equal {}", problem.scene.name, relief.surface.owner, relief.quantity()),
         quantity: relief.quantity().into(),
         unit: "mm".into(),
         axes: relief.surface.axis_names(),
         scales: ColourScales::Common,
         contours: true,
-        panels: shapes.iter().filter_map(|shape| relief_of(&relief, shape)).map(panel).collect(),
+        panels: shapes.iter().filter_map(|shape| relief_of(relief, shape)).map(panel).collect(),
     }
     .figure()
 }
@@ -194,12 +256,12 @@ fn side(body: &BodyFields, axis: usize) -> f64 {
     most - least
 }
 
-/// A body with its displacements magnified, lifted by some mm.
-fn solid(body: &BodyFields, times: f64, lift: f64) -> SolidBody {
+/// A body with its displacements magnified, moved by some mm.
+fn solid(body: &BodyFields, times: f64, moved: [f64; 3]) -> SolidBody {
     let skin = Skin::new(&body.mesh);
     let point = |&node: &u32| {
-        let ([x1, x2, x3], u) = (body.positions[node as usize], body.displacement[node as usize]);
-        [x1 + times * u[0], x2 + times * u[1], x3 + times * u[2] + lift]
+        let (x, u) = (body.positions[node as usize], body.displacement[node as usize]);
+        std::array::from_fn(|axis| x[axis] + times * u[axis] + moved[axis])
     };
     SolidBody {
         points: skin.nodes.iter().map(point).collect(),

@@ -1,11 +1,28 @@
-//! The contact surface as pictures show it: seen along its mean normal, as facets between its nodes.
+//! A contact surface as pictures show it: seen along its mean normal, as facets between its nodes.
 
-use contact::equilibrium::{ContactFacets, ContactProblem};
-use std::collections::BTreeMap;
+use crate::commands::scene_words;
+use contact::equilibrium::ContactProblem;
+use contact::scene::BodyFace;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// The contact surface projected along an axis.
+/// One side of a contact projected along an axis.
 pub struct ContactSurface {
-    facets: ContactFacets,
+    /// Its contact, by its place in the scene.
+    pub contact: usize,
+    /// The body that it is a face of.
+    pub body: usize,
+    /// What names of pictures end with: nothing where the scene has one contact.
+    pub suffix: String,
+    /// What the contact is called: nothing where the scene has one.
+    pub label: String,
+    /// What titles call the surface.
+    pub owner: String,
+    /// Its nodes in the mesh, ascending.
+    nodes: Vec<u32>,
+    /// The contact node at every node; none where supports hold the normal or nothing lies opposite, and on a master.
+    points: Vec<Option<usize>>,
+    /// The corners of the facets by their places among the nodes, counterclockwise seen from outside.
+    faces: Vec<Vec<usize>>,
     /// Positions of the nodes at the start, mm.
     places: Vec<[f64; 3]>,
     /// The two axes of the plan.
@@ -18,22 +35,66 @@ pub struct ContactSurface {
 const ON_LINE: f64 = 1e-9;
 
 impl ContactSurface {
-    pub fn new(problem: &ContactProblem) -> Self {
-        let (facets, positions) = (problem.contact_facets(), &problem.start_positions()[0]);
-        let places: Vec<[f64; 3]> = facets.nodes.iter().map(|&node| positions[node as usize]).collect();
-        let mut normal = [0.0; 3];
-        for facet in &facets.facets {
-            for (index, &from) in facet.iter().enumerate() {
-                let (a, b) = (places[from], places[facet[(index + 1) % facet.len()]]);
-                (0..3).for_each(|i| {
-                    normal[i] += 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
-                });
+    /// The slave faces of all contacts whose sides may part.
+    pub fn all(problem: &ContactProblem) -> Vec<Self> {
+        let contacts = problem.scene.contacts.iter().enumerate().filter(|(_, contact)| !contact.is_tied());
+        contacts.map(|(index, contact)| Self::new(problem, index, &contact.slave)).collect()
+    }
+
+    /// The sides of contacts on bodies that controls shape, slaves before masters; of contacts whose sides are glued
+    /// only where a body has no other.
+    pub fn shaped(problem: &ContactProblem) -> Vec<Self> {
+        let contacts = &problem.scene.contacts;
+        let free = |body: usize| {
+            let sides = contacts.iter().filter(|contact| !contact.is_tied());
+            sides.flat_map(|contact| std::iter::once(&contact.slave).chain(contact.master_face())).any(|own| own.body == body)
+        };
+        let mut found: Vec<Self> = Vec::new();
+        for (index, contact) in contacts.iter().enumerate() {
+            for side in std::iter::once(&contact.slave).chain(contact.master_face()) {
+                if problem.map.shapes(side.body) && (!contact.is_tied() || !free(side.body)) {
+                    let surface = Self::new(problem, index, side);
+                    let suffix = if *side == contact.slave { "" } else { "_master" };
+                    found.push(Self { suffix: format!("{}{suffix}", surface.suffix), ..surface });
+                }
             }
         }
-        let across = (0..3).fold(2, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });
-        let axes = [[1, 2], [0, 2], [0, 1]][across];
-        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-        Self { facets, places, axes, normal: normal.map(|x| if length > 0.0 { x / length } else { 0.0 }) }
+        found
+    }
+
+    /// A side of a contact.
+    fn new(problem: &ContactProblem, contact: usize, side: &BodyFace) -> Self {
+        let (scene, body) = (&problem.scene, side.body);
+        let (mesh, positions) = (&problem.bodies[body].mesh, &problem.start_positions()[body]);
+        let corners = |face| {
+            let (mut nodes, count) = mesh.face_with_corners(face);
+            nodes.truncate(count);
+            nodes
+        };
+        let facets: Vec<Vec<u32>> = mesh.faces().get(&side.face).into_iter().flatten().copied().map(corners).collect();
+        let mut nodes: Vec<u32> = facets.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let place = |node: &u32| nodes.partition_point(|other| other < node);
+        let faces: Vec<Vec<usize>> = facets.iter().map(|facet| facet.iter().map(place).collect()).collect();
+        let own = problem.boundary.contact_points().iter().enumerate();
+        let own = own.filter(|(_, point)| point.contact == contact && point.body == body);
+        let known: HashMap<u32, usize> = own.map(|(index, point)| (point.node, index)).collect();
+        let points = nodes.iter().map(|node| known.get(node).copied()).collect();
+        let places: Vec<[f64; 3]> = nodes.iter().map(|&node| positions[node as usize]).collect();
+        let (axes, normal) = plan_of(&places, &faces);
+        let label = scene_words::contact_label(scene, contact);
+        let suffix = if label.is_empty() { String::new() } else { format!("_contact_{}", contact + 1) };
+        let owner = match scene_words::is_short(scene) {
+            true => "contact surface of the lower body".to_owned(),
+            false => format!("contact surface {} of {}", side.face, scene.bodies[body].name),
+        };
+        Self { contact, body, suffix, label, owner, nodes, points, faces, places, axes, normal }
+    }
+
+    /// What the contact is called, as the end of a title.
+    pub fn words(&self) -> String {
+        if self.label.is_empty() { String::new() } else { format!(", {}", self.label) }
     }
 
     /// The nodes in the plan, mm.
@@ -43,23 +104,22 @@ impl ContactSurface {
 
     /// The facets by the places of their nodes.
     pub fn faces(&self) -> Vec<Vec<usize>> {
-        self.facets.facets.clone()
+        self.faces.clone()
     }
 
-    /// Nodes of the surface in the mesh.
+    /// Nodes of the surface in the mesh of its body.
     pub fn nodes(&self) -> &[u32] {
-        &self.facets.nodes
+        &self.nodes
     }
 
     /// The contact node at every node; none where supports hold the normal.
     pub fn points(&self) -> &[Option<usize>] {
-        &self.facets.points
+        &self.points
     }
 
     /// Values at the nodes from those at the contact nodes, `rest` at the others.
     pub fn spread<T: Clone>(&self, values: &[T], rest: T) -> Vec<T> {
-        self.facets
-            .points
+        self.points
             .iter()
             .map(|point| point.map_or_else(|| rest.clone(), |point| values[point].clone()))
             .collect()
@@ -92,7 +152,7 @@ impl ContactSurface {
             let key = ((place / size.max(f64::MIN_POSITIVE) / ON_LINE) as i64).wrapping_sub(i64::MIN) as u64;
             found.insert(key, (place, value));
         };
-        for ([a, b], _) in self.facets.edges() {
+        for [a, b] in self.edges() {
             let [from, to] = [a, b].map(|node| self.places[node][across] - level);
             for (node, distance) in [(a, from), (b, to)] {
                 if distance.abs() <= ON_LINE * size {
@@ -108,6 +168,15 @@ impl ContactSurface {
         found.into_values().collect()
     }
 
+    /// Edges between the nodes by their places, the smaller first, ascending.
+    fn edges(&self) -> BTreeSet<[usize; 2]> {
+        let of_facet = |facet: &Vec<usize>| {
+            let ends = facet.iter().zip(facet.iter().cycle().skip(1));
+            ends.map(|(&from, &to)| [from.min(to), from.max(to)]).collect::<Vec<_>>()
+        };
+        self.faces.iter().flat_map(of_facet).collect()
+    }
+
     /// The node of the largest of some values.
     pub fn peak(&self, values: &[f64]) -> usize {
         (0..values.len()).fold(0, |best, node| if values[node] > values[best] { node } else { best })
@@ -117,6 +186,21 @@ impl ContactSurface {
     pub fn level(&self, axis: usize, node: usize) -> f64 {
         self.places[node][self.axes[1 - axis]]
     }
+}
+
+/// The two axes of the plan of a surface, and its mean outward normal.
+fn plan_of(places: &[[f64; 3]], faces: &[Vec<usize>]) -> ([usize; 2], [f64; 3]) {
+    let mut normal = [0.0; 3];
+    for facet in faces {
+        for (index, &from) in facet.iter().enumerate() {
+            let (a, b) = (places[from], places[facet[(index + 1) % facet.len()]]);
+            (0..3)
+                .for_each(|i| normal[i] += 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]));
+        }
+    }
+    let across = (0..3).fold(2, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });
+    let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    ([[1, 2], [0, 2], [0, 1]][across], normal.map(|x| if length > 0.0 { x / length } else { 0.0 }))
 }
 
 /// Names of the axes.

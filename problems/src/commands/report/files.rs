@@ -24,7 +24,7 @@ pub fn write_optimization(
     let shapes = ended.shapes;
     let MeshRun { objective, report, .. } = ended.last;
     let mut out = ReportFolder::new(folder, loaded, objective);
-    let layout = Layout::of(&objective.solver().problem().scene.shape);
+    let layout = Layout::of(&objective.solver().problem().scene);
     let written = controls::written(report.solution.as_slice(), layout)?;
     out.write("controls.json", &written, "the controls found")?;
     let what = "all cuts and multipliers behind the certificate, for recheck";

@@ -5,6 +5,8 @@ use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, jso
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::register::{JOURNAL, REGISTER};
+use crate::commands::report::bodies::Relief;
+use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::key_numbers::key_numbers;
 use crate::commands::report::stamp::stamp;
@@ -110,40 +112,47 @@ impl<'a> ReportFolder<'a> {
             let sketch = setup::sketch(objective, first.solved.controls.as_slice())?;
             self.draw(sketch, "bodies, supports and loads", captions::SKETCH)?;
         }
-        let common = gallery::pressure(objective, shapes, ColourScales::Common).map_err(Failure::computation)?;
-        if shapes.len() == 1 {
-            self.draw(common, "contact pressure", captions::PRESSURE_ALONE)?;
-        } else {
-            let own = gallery::pressure(objective, shapes, ColourScales::Own).map_err(Failure::computation)?;
-            self.keep(&common, "contact pressure on one scale")?;
-            self.keep(&own, "contact pressure, each on its own scale")?;
-            let figures = [("one scale".to_owned(), common), ("each on its own scale".to_owned(), own)];
-            let caption = captions::PRESSURE.into();
-            self.parts.pictures.push(Block::Choice { figures: Box::new(figures), caption });
-        }
+        let surfaces = ContactSurface::all(objective.solver().problem());
+        surfaces.iter().try_for_each(|surface| self.draw_pressure(surface, shapes))?;
         let friction = objective.solver().problem().boundary.has_friction();
         let (what, status) = match friction {
             true => ("open, stick and slip, with the friction traction", captions::STATUS),
             false => ("open and closed contact nodes", captions::STATUS_WITHOUT_FRICTION),
         };
-        let mut figures = vec![
-            (gallery::cuts(objective, shapes), "contact pressure along lines through the peaks", captions::CUTS),
-            (gallery::status(objective, shapes), what, status),
-        ];
+        let mut figures = Vec::new();
+        let cuts = "contact pressure along lines through the peaks";
+        figures.extend(surfaces.iter().map(|surface| (gallery::cuts(objective, surface, shapes), cuts, captions::CUTS)));
+        figures.extend(surfaces.iter().map(|surface| (gallery::status(objective, surface, shapes), what, status)));
         let stress = "von Mises stress on the deformed bodies";
         figures
             .extend(bodies::von_mises(objective, shapes).into_iter().map(|figure| (figure, stress, captions::STRESS)));
-        figures.extend([
-            (bodies::surfaces(objective, shapes), "the shape of the contact surface in space", captions::SURFACE),
-            (
-                bodies::surface_map(objective, shapes),
-                "the shape of the contact surface from above",
-                captions::SURFACE_MAP,
-            ),
-        ]);
+        for relief in Relief::all(objective.solver().problem()) {
+            let space = "the shape of the contact surface in space";
+            figures.push((bodies::surfaces(objective, &relief, shapes), space, captions::SURFACE));
+            let above = "the shape of the contact surface from above";
+            figures.push((bodies::surface_map(objective, &relief, shapes), above, captions::SURFACE_MAP));
+        }
         figures
             .into_iter()
             .try_for_each(|(figure, what, caption)| self.draw(figure.map_err(Failure::computation)?, what, caption))
+    }
+
+    /// The contact pressures of some shapes on a surface.
+    fn draw_pressure(&mut self, surface: &ContactSurface, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
+        let figure = |scales| {
+            gallery::pressure(self.objective, surface, shapes, scales).map_err(Failure::computation)
+        };
+        let common = figure(ColourScales::Common)?;
+        if shapes.len() == 1 {
+            return self.draw(common, "contact pressure", captions::PRESSURE_ALONE);
+        }
+        let own = figure(ColourScales::Own)?;
+        self.keep(&common, "contact pressure on one scale")?;
+        self.keep(&own, "contact pressure, each on its own scale")?;
+        let figures = [("one scale".to_owned(), common), ("each on its own scale".to_owned(), own)];
+        let caption = captions::PRESSURE.into();
+        self.parts.pictures.push(Block::Choice { figures: Box::new(figures), caption });
+        Ok(())
     }
 
     /// Fields of shapes for ParaView.

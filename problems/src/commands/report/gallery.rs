@@ -56,14 +56,14 @@ impl<'a> ShownShape<'a> {
     }
 }
 
-/// Contact pressures side by side, on one scale or on one each.
+/// Contact pressures on a surface side by side, on one scale or on one each.
 pub fn pressure(
     objective: &ContactObjective,
+    surface: &ContactSurface,
     shapes: &[ShownShape<'_>],
     scales: ColourScales,
 ) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let surface = ContactSurface::new(problem);
     let panel = |(caption, values): (String, Vec<f64>)| MapPanel {
         caption,
         points: surface.plan(),
@@ -77,8 +77,8 @@ pub fn pressure(
         ColourScales::Own => ("pressure_own_scales", ", each on its own scale"),
     };
     Map {
-        name: name.into(),
-        title: format!("{}: contact pressure{words}", problem.scene.name),
+        name: format!("{name}{}", surface.suffix),
+        title: format!("{}: contact pressure{}{words}", problem.scene.name, surface.words()),
         quantity: "pressure".into(),
         unit: "MPa".into(),
         axes: surface.axis_names(),
@@ -92,10 +92,13 @@ pub fn pressure(
 /// What the wanted pressure is called beside those of shapes.
 const WANTED: &str = "wanted";
 
-/// Pressures of all shapes along both axes of the plan through the peak of each of them.
-pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+/// Pressures of all shapes on a surface along both axes of the plan through the peak of each of them.
+pub fn cuts(
+    objective: &ContactObjective,
+    surface: &ContactSurface,
+    shapes: &[ShownShape<'_>],
+) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let surface = ContactSurface::new(problem);
     let spread = |values: &[f64]| surface.spread(values, 0.0);
     let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| spread(&objective.pressures(shape.state()))).collect();
     let wanted = objective.wanted().map(spread);
@@ -127,8 +130,8 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
         }
     }
     Lines {
-        name: "pressure_cuts".into(),
-        title: format!("{}: contact pressure along lines through the peaks", problem.scene.name),
+        name: format!("pressure_cuts{}", surface.suffix),
+        title: format!("{}: contact pressure along lines through the peaks{}", problem.scene.name, surface.words()),
         quantity: "pressure".into(),
         unit: "MPa".into(),
         columns: 2,
@@ -137,10 +140,13 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
     .figure()
 }
 
-/// The status of every contact node; with friction, the traction as arrows.
-pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+/// The status of every contact node of a surface; with friction, the traction as arrows.
+pub fn status(
+    objective: &ContactObjective,
+    surface: &ContactSurface,
+    shapes: &[ShownShape<'_>],
+) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
-    let surface = ContactSurface::new(problem);
     let friction = problem.boundary.has_friction();
     // Without friction, nothing says whether a closed node slides.
     let names: &[&str] = if friction { &["open", "stick", "slip"] } else { &["open", "closed"] };
@@ -165,8 +171,8 @@ pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result
     };
     let words = if friction { " and friction traction" } else { "" };
     Classes {
-        name: "status".into(),
-        title: format!("{}: contact status{words}", problem.scene.name),
+        name: format!("status{}", surface.suffix),
+        title: format!("{}: contact status{words}{}", problem.scene.name, surface.words()),
         axes: surface.axis_names(),
         classes: names.iter().map(|name| (*name).to_owned()).collect(),
         arrows: friction.then(|| ("traction".into(), "MPa".into())),

@@ -2,6 +2,7 @@
 
 use crate::commands::facts::{Fact, Group};
 use crate::commands::report::gallery::ShownShape;
+use crate::commands::scene_words;
 use crate::commands::shape_facts;
 use crate::commands::solved_shape::ContactObjective;
 use contact::deformation::Deformation;
@@ -41,12 +42,18 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
             100.0 * deformation(fields).strain
         }),
     ]);
-    let bodies = seen.iter().map(|(_, fields)| fields.bodies.len()).min().unwrap_or(0);
-    let names = [("volume_lower", "volume of the lower body"), ("volume_upper", "volume of the upper body")];
-    for (body, (key, quantity)) in names.into_iter().enumerate().take(bodies) {
-        facts.push(row(key, quantity, "mm³", &|_, fields| {
-            fields.bodies[body].mesh.volume(&fields.bodies[body].positions)
-        }));
+    let scene = &objective.solver().problem().scene;
+    for (number, body) in scene.bodies.iter().enumerate() {
+        // The body of a mesh alone has always been the lower one here.
+        let (name, stem) = match body.name.as_str() {
+            "body" => ("lower", "lower".to_owned()),
+            name => (name, scene_words::stem(scene, number)),
+        };
+        let volumes = seen.iter().map(|(_, fields)| {
+            let body = &fields.bodies[number];
+            body.mesh.volume(&body.positions).into()
+        });
+        facts.push(Fact::row(format!("volume_{stem}"), &format!("volume of the {name} body"), volumes.collect(), "mm³"));
     }
     if objective.solver().problem().boundary.has_friction() {
         facts.push(row("friction_work", "friction work Σ|λ_T·slip|", "N·mm", &|shape, _| {

@@ -16,5 +16,6 @@ pub mod study;
 mod tables;
 
 pub use bodies::Relief;
+pub use contact_surface::ContactSurface;
 pub use folder::VTK;
 pub use sections::{export_command, found_label};

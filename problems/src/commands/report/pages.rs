@@ -2,15 +2,16 @@
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::{Facts, Group};
-use crate::commands::mesh_words::mesh;
 use crate::commands::numbers::{number, rounded};
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{export_command, pictures};
+use crate::commands::scene_words::{friction, mesh};
 use crate::commands::shape_facts::is_proved;
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::StageSeconds;
+use contact::scene::{self, BodyScene};
 use contact::shape::{HeightShape, ShapeScene};
 use figures::page::{Block, Page, Section};
 use std::path::Path;
@@ -24,11 +25,8 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     let command =
         Block::Listing { title: "The command that writes STL, STEP and CSV".into(), text: export_command(folder) };
-    sections.extend([
-        controls(objective, shapes[1].controls.as_slice()),
-        Section::new("Export", vec![command]),
-        seconds(&shapes[1]),
-    ]);
+    sections.extend(controls(objective, shapes[1].controls.as_slice()));
+    sections.extend([Section::new("Export", vec![command]), seconds(&shapes[1])]);
     page(objective, what, facts.lead.join(". ") + ".", sections)
 }
 
@@ -36,7 +34,8 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
 pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape, facts: &Facts) -> Page {
     let mut sections = vec![parts.numbers, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
-    sections.extend([controls(objective, shape.controls.as_slice()), seconds(shape)]);
+    sections.extend(controls(objective, shape.controls.as_slice()));
+    sections.push(seconds(shape));
     page(objective, "one shape", facts.lead.join(". ") + ".", sections)
 }
 
@@ -63,30 +62,42 @@ pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> P
 
 fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Section>) -> Page {
     let scene = &objective.solver().problem().scene;
-    let (bodies, mesh, friction) = (scene.body_count(), mesh(scene), scene.contact.friction);
+    let (bodies, mesh, friction) = (scene.bodies.len(), mesh(scene), friction(scene));
     let title = format!("{}: {what} ({bodies} × {mesh}, friction {friction})", scene.name);
     Page { title, lead, sections, ..Page::default() }
 }
 
-/// The controls with their places.
-fn controls(objective: &ContactObjective, controls: &[f64]) -> Section {
+/// The controls of all bodies with their places, a section each.
+fn controls(objective: &ContactObjective, controls: &[f64]) -> Vec<Section> {
     let scene = &objective.solver().problem().scene;
-    match (&scene.shape, scene.blocks()) {
-        (ShapeScene::Heights(shape), Some(blocks)) => heights(shape, blocks.size, controls),
-        (ShapeScene::Lattice(lattice), _) => {
-            let rows =
-                lattice.control_names().into_iter().zip(controls).map(|(name, value)| vec![name, number(*value)]);
-            let table = Block::table(["control", "displacement, mm"], rows.collect::<Vec<_>>());
-            Section::new("Displacements of the control points", vec![table])
+    let shaped = || scene.bodies.iter().filter_map(|body| Some((body, body.shape.as_ref()?)));
+    let (several, mut rest) = (shaped().count() > 1, controls);
+    let section = |(body, shape): (&BodyScene, &ShapeScene)| {
+        let own;
+        (own, rest) = rest.split_at(shape.control_count().min(rest.len()));
+        let of_body = if several { format!(" of {}", body.name) } else { String::new() };
+        match (shape, body.block()) {
+            (ShapeScene::Heights(shape), Some(block)) => heights(shape, block, &of_body, own),
+            (ShapeScene::Lattice(lattice), _) => {
+                let rows = lattice.control_names().into_iter().zip(own);
+                let rows = rows.map(|(name, value)| vec![name, number(*value)]).collect::<Vec<_>>();
+                let table = Block::table(["control", "displacement, mm"], rows);
+                Section::new(&format!("Displacements of the control points{of_body}"), vec![table])
+            }
+            _ => Section::default(),
         }
-        _ => Section::default(),
-    }
+    };
+    shaped().map(section).collect()
 }
 
 /// Control heights with their places: a row per control point along x₁.
-fn heights(shape: &HeightShape, size: [f64; 2], heights: &[f64]) -> Section {
+fn heights(shape: &HeightShape, block: &scene::Block, of_body: &str, heights: &[f64]) -> Section {
     let Ok(surface) = shape.surface() else { return Section::default() };
-    let [across, along] = surface.control_places(size);
+    let mut places = surface.control_places(block.size);
+    for (places, corner) in places.iter_mut().zip(block.corner) {
+        places.iter_mut().for_each(|place| *place += corner);
+    }
+    let [across, along] = places;
     let head = std::iter::once("x₁, mm \\ x₂, mm".to_owned()).chain(along.iter().map(|x2| number(*x2)));
     let rows = heights
         .chunks(along.len())
@@ -95,7 +106,7 @@ fn heights(shape: &HeightShape, size: [f64; 2], heights: &[f64]) -> Section {
     let words = "Heights of the control points, mm, at their places x₁ (rows) and x₂ (columns). The surface follows the control points; it \
                  passes through those at its corners.";
     let table = Block::table(head, rows.collect::<Vec<_>>());
-    Section::new("Control heights", vec![table, Block::Text(words.into())])
+    Section::new(&format!("Control heights{of_body}"), vec![table, Block::Text(words.into())])
 }
 
 /// Seconds of the parts of one state; empty for a solver that does not keep them.

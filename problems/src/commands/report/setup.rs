@@ -1,14 +1,17 @@
 //! The sketch of a scene: bodies at a shape, supports and loads with their values.
 
 use crate::commands::failure::Failure;
+use crate::commands::report::bodies::apart;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::skin::{Skin, extent};
+use crate::commands::scene_words;
 use crate::commands::solved_shape::ContactObjective;
 use contact::body::Body;
 use contact::body::mesh::CellFace;
-use contact::equilibrium::{ContactProblem, Positions};
+use contact::equilibrium::{ContactProblem, ContactRows, Positions};
 use contact::formula::Formula;
-use contact::scene::{BodyScene, Held, Load, LoadKind, Scene, Support};
+use contact::scene::{Block, BodyScene, CounterSurface, Held, Load, LoadKind, Scene, Support};
+use contact::shape::ShapedFace;
 use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, View, nice_below, number};
 
 /// Most marks of one support or load.
@@ -38,40 +41,42 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
     });
     let side = sides.into_iter().fold(0.0, f64::max);
     let lift = nice_below(MAX_LIFT * side);
-    let surface = ContactSurface::new(problem);
-    let view = View::towards(surface.normal);
-    let counter = Counter::new(problem, &positions, &surface, side)?;
-    let mut bodies = vec![drawn(&problem.bodies[0], &positions[0], [0.0; 3])];
-    let lifted = surface.normal.map(|part| lift * part);
-    let upper: Option<Vec<[f64; 3]>> = positions.get(1).map(|nodes| counter.carved(scene, nodes));
+    let surfaces = ContactSurface::all(problem);
+    let view = View::towards(surfaces.first().map_or([0.0, 0.0, 1.0], |surface| surface.normal));
+    let counters = Counter::all(problem, &positions, &surfaces, side)?;
+    let lifts = apart(scene, &surfaces, |surface| surface.normal.map(|part| lift * part));
+    let nodes: Vec<Vec<[f64; 3]>> =
+        positions.iter().enumerate().map(|(body, nodes)| carved(scene, &counters, (body, nodes))).collect();
+    let parts = problem.bodies.iter().zip(&nodes).zip(&lifts);
+    let mut bodies: Vec<SketchBody> = parts.clone().map(|((body, nodes), lift)| drawn(body, nodes, *lift)).collect();
     let mut notes = Vec::new();
-    match &upper {
-        Some(nodes) => bodies.push(drawn(&problem.bodies[1], nodes, lifted)),
-        None => {
-            let points = counter.drawn().into_iter().map(|x| sum(x, lifted)).collect();
-            bodies.push(SketchBody { points, faces: surface.faces() });
-            notes.push("surface above: rigid obstacle".to_owned());
-        }
+    for counter in counters.iter().filter(|counter| counter.block.is_none()) {
+        let surface = counter.surface;
+        let lifted = sum(lifts[surface.body], surface.normal.map(|part| lift * part));
+        bodies.push(SketchBody {
+            points: counter.drawn().into_iter().map(|x| sum(x, lifted)).collect(),
+            faces: surface.faces(),
+        });
+        notes.push(match surface.label.as_str() {
+            "" => "surface above: rigid obstacle".to_owned(),
+            label => format!("{label}: rigid obstacle"),
+        });
     }
     let mut marks = Vec::new();
-    for (number, (body, (_, of_scene))) in problem.bodies.iter().zip(scene.bodies()).enumerate() {
-        let (nodes, lift) =
-            if number == 0 { (&positions[0][..], [0.0; 3]) } else { (upper.as_deref().unwrap_or(&[]), lifted) };
-        let name = if body.name == "body" { "body".to_owned() } else { format!("{} body", body.name) };
-        let at = Place { body, nodes, name: &name, lift, side, viewer: view.towards_viewer() };
+    for (((body, nodes), lift), of_scene) in parts.zip(&scene.bodies) {
+        let name = scene_words::body(&body.name);
+        let at = Place { body, nodes, name: &name, lift: *lift, side, viewer: view.towards_viewer() };
         marks.extend(of_scene.supports.iter().filter_map(|support| at.support(support)));
         marks.extend(of_scene.loads.iter().filter_map(|load| at.load(load)));
         notes.extend(of_scene.loads.iter().filter_map(body_force));
         notes.extend(materials(&name, of_scene));
     }
-    notes.push(match scene.contact.friction > 0.0 {
-        true => format!("friction coefficient {}", number(scene.contact.friction)),
-        false => "no friction".into(),
+    notes.extend((0..scene.contacts.len()).flat_map(|contact| frictions(scene, contact)));
+    notes.extend(counters.iter().map(Counter::words));
+    notes.push(match scene_words::is_short(scene) {
+        true => format!("what lies above the contact surface is lifted by {} mm", number(lift)),
+        false => format!("bodies are drawn apart by {} mm along the normals of their contact", number(lift)),
     });
-    let regions = scene.contact.friction_by_region.iter();
-    notes.extend(regions.map(|(region, friction)| format!("friction coefficient {} on {region}", number(*friction))));
-    notes.push(counter.words());
-    notes.push(format!("what lies above the contact surface is lifted by {} mm", number(lift)));
     let [a, b, _] = sides.map(number);
     let sketch = Sketch {
         name: "sketch".into(),
@@ -85,26 +90,69 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
     sketch.figure().map_err(Failure::computation)
 }
 
-/// The counter surface as it is drawn: feet of the nodes of the contact surface, whose relief along the mean normal is
-/// magnified so that its curvature is seen.
-struct Counter {
+/// The friction of a contact in words.
+fn frictions(scene: &Scene, index: usize) -> Vec<String> {
+    let contact = &scene.contacts[index];
+    let label = scene_words::contact_label(scene, index);
+    let lead = if label.is_empty() { label } else { format!("{label}: ") };
+    if contact.is_tied() {
+        return vec![if lead.is_empty() { scene_words::sides(scene, index) } else { lead.trim_end_matches(": ").into() }];
+    }
+    let own = match contact.friction > 0.0 {
+        true => format!("{lead}friction coefficient {}", number(contact.friction)),
+        false => format!("{lead}no friction"),
+    };
+    let regions = contact.friction_by_region.iter();
+    let regions =
+        regions.map(|(region, friction)| format!("{lead}friction coefficient {} on {region}", number(*friction)));
+    std::iter::once(own).chain(regions).collect()
+}
+
+/// A counter surface as it is drawn: feet of the nodes of a contact surface, whose relief along the mean normal is
+/// magnified so that its curvature is seen. It is an obstacle, or the bottom of a block.
+struct Counter<'a> {
+    surface: &'a ContactSurface,
+    /// The body whose bottom it is.
+    block: Option<usize>,
     feet: Vec<[f64; 3]>,
-    normal: [f64; 3],
     low: f64,
     high: f64,
     times: f64,
 }
 
-impl Counter {
-    fn new(
+impl<'a> Counter<'a> {
+    /// The counter surfaces that are drawn: obstacles, and bottoms of blocks that no control moves.
+    fn all(
         problem: &ContactProblem,
         positions: &Positions,
-        surface: &ContactSurface,
+        surfaces: &'a [ContactSurface],
         side: f64,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Vec<Self>, Failure> {
         let rows = problem.rows(positions).map_err(Failure::computation)?;
+        let mut found: Vec<Self> = Vec::new();
+        for surface in surfaces {
+            let block = match problem.scene.contacts[surface.contact].master_face() {
+                None => None,
+                Some(master) => match bottom_of(&problem.scene.bodies[master.body], &master.face) {
+                    // Several contacts of one bottom would magnify it in several ways.
+                    Some(_) if found.iter().all(|other| other.block != Some(master.body)) => Some(master.body),
+                    _ => continue,
+                },
+            };
+            found.push(Self::new(problem, &positions[surface.body], &rows, (surface, block), side));
+        }
+        Ok(found)
+    }
+
+    fn new(
+        problem: &ContactProblem,
+        positions: &[[f64; 3]],
+        rows: &ContactRows,
+        (surface, block): (&'a ContactSurface, Option<usize>),
+        side: f64,
+    ) -> Self {
         let node = |(&node, point): (&u32, &Option<usize>)| {
-            let x = positions[0][node as usize];
+            let x = positions[node as usize];
             point.map_or(x, |point| {
                 let row = &rows.nodes[point];
                 sum(x, row.normal.map(|n| row.gap * n))
@@ -114,12 +162,12 @@ impl Counter {
         let levels = feet.iter().map(|foot| dot(*foot, surface.normal));
         let (low, high) =
             levels.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
-        let room = problem.scene.upper.as_ref().map_or(f64::INFINITY, |upper| MAX_CUT * (upper.top - low));
-        let drawn = (RELIEF * side).min(room);
+        let top = block.and_then(|body| problem.scene.bodies[body].block()).map_or(f64::INFINITY, least_top);
+        let drawn = (RELIEF * side).min(MAX_CUT * (top - low));
         // Differences that are rounding are no curvature.
         let curved = high - low > 16.0 * f64::EPSILON * high.abs().max(side);
         let times = if curved { nice_below(drawn / (high - low)).max(1.0) } else { 1.0 };
-        Ok(Self { feet, normal: surface.normal, low, high, times })
+        Self { surface, block, feet, low, high, times }
     }
 
     /// By how much a level is drawn above its own.
@@ -128,27 +176,42 @@ impl Counter {
     }
 
     fn drawn(&self) -> Vec<[f64; 3]> {
-        let raised = |foot: &[f64; 3]| sum(*foot, self.normal.map(|part| self.raised(dot(*foot, self.normal)) * part));
+        let normal = self.surface.normal;
+        let raised = |foot: &[f64; 3]| sum(*foot, normal.map(|part| self.raised(dot(*foot, normal)) * part));
         self.feet.iter().map(raised).collect()
-    }
-
-    /// The nodes of an upper block whose lower surface is as it is drawn.
-    fn carved(&self, scene: &Scene, nodes: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let Some(top) = scene.upper.as_ref().map(|upper| upper.top) else { return nodes.to_vec() };
-        let carved = |&[x1, x2, x3]: &[f64; 3]| {
-            let height = scene.counter_surface.height(x1, x2);
-            [x1, x2, top - (top - x3) * (top - height - self.raised(height)) / (top - height)]
-        };
-        nodes.iter().map(carved).collect()
     }
 
     fn words(&self) -> String {
         let relief = number(self.high - self.low);
+        let label = &self.surface.label;
+        let lead = if label.is_empty() { String::new() } else { format!("{label}: ") };
         match self.times > 1.0 {
-            true => format!("counter surface: relief {relief} mm, drawn × {}", number(self.times)),
-            false => format!("counter surface: relief {relief} mm"),
+            true => format!("{lead}counter surface: relief {relief} mm, drawn × {}", number(self.times)),
+            false => format!("{lead}counter surface: relief {relief} mm"),
         }
     }
+}
+
+/// The bottom of a block where a face is that and no control moves the block.
+fn bottom_of<'s>(body: &'s BodyScene, face: &str) -> Option<&'s CounterSurface> {
+    let is_bottom = face == ShapedFace::Bottom.block_face().name();
+    body.block().filter(|_| is_bottom && body.shape.is_none()).map(|block| &block.bottom)
+}
+
+/// The least height of the top of a block.
+fn least_top(block: &Block) -> f64 {
+    block.heights()[1].iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The nodes of a body, whose bottom is as it is drawn where it is a counter surface.
+fn carved(scene: &Scene, counters: &[Counter<'_>], (body, nodes): (usize, &[[f64; 3]])) -> Vec<[f64; 3]> {
+    let counter = counters.iter().find(|counter| counter.block == Some(body));
+    let (Some(counter), Some(block)) = (counter, scene.bodies[body].block()) else { return nodes.to_vec() };
+    let carved = |&[x1, x2, x3]: &[f64; 3]| {
+        let (top, height) = (block.top.height(x1, x2), block.bottom.height(x1, x2));
+        [x1, x2, top - (top - x3) * (top - height - counter.raised(height)) / (top - height)]
+    };
+    nodes.iter().map(carved).collect()
 }
 
 fn drawn(body: &Body, positions: &[[f64; 3]], lift: [f64; 3]) -> SketchBody {

@@ -124,9 +124,20 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
     }
     let title = |what: &str| format!("{}: {what}", loaded.case.scene.name);
     for (number, rows) in (1..).zip(shown.chunks(PER_FIGURE)).take(MAX_SHOWN / PER_FIGURE) {
-        figures.push((pressures(format!("pressures_{number}"), title("contact pressure"), rows)?, PRESSURES));
-        if study.vary.iter().any(|varied| varied.changes_shapes()) || rows[0].solved.optimization.is_some() {
-            figures.push((surfaces(format!("surfaces_{number}"), title("contact surface"), rows)?, SURFACES));
+        // All rows are of one scene, so that they have the same surfaces.
+        for (index, picture) in rows[0].solved.pictures().enumerate() {
+            let Picture { suffix, owner, .. } = picture;
+            let changes = study.vary.iter().any(|varied| varied.changes_shapes());
+            if !picture.pressures.is_empty() {
+                let of = if owner.is_empty() { String::new() } else { format!(", {owner}") };
+                let name = format!("pressures_{number}{suffix}");
+                figures.push((pressures(name, title(&format!("contact pressure{of}")), index, rows)?, PRESSURES));
+            }
+            if !picture.relief.is_empty() && (changes || rows[0].solved.optimization.is_some()) {
+                let owner = if owner.is_empty() { "contact surface of the lower body" } else { owner };
+                let name = format!("surfaces_{number}{suffix}");
+                figures.push((surfaces(name, title(owner), index, rows)?, SURFACES));
+            }
         }
     }
     Ok(figures)
@@ -187,12 +198,15 @@ fn caption(row: &Row) -> String {
     options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
 }
 
-fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
+/// The pressures of rows on the contact surface with this number.
+fn pressures(name: String, title: String, surface: usize, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
-        let Picture { plan, faces, pressures, .. } = &solved.picture;
-        MapPanel { caption: caption(row), points: plan.clone(), faces: faces.clone(), values: pressures.clone() }
+        let Picture { plan, faces, pressures, .. } = solved.pictures().nth(surface)?;
+        let values = pressures.clone();
+        Some(MapPanel { caption: caption(row), points: plan.clone(), faces: faces.clone(), values })
     };
-    let axes = rows.first().map_or_else(Default::default, |shown| shown.solved.picture.axes.clone());
+    let picture = rows.first().and_then(|shown| shown.solved.pictures().nth(surface));
+    let axes = picture.map_or_else(Default::default, |picture| picture.axes.clone());
     Map {
         name,
         title,
@@ -201,24 +215,26 @@ fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, 
         axes,
         scales: ColourScales::Common,
         contours: false,
-        panels: rows.iter().map(panel).collect(),
+        panels: rows.iter().filter_map(panel).collect(),
     }
     .figure()
 }
 
-fn surfaces(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
+/// The relief of the contact surface with this number.
+fn surfaces(name: String, title: String, surface: usize, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
-        let Picture { plan, faces, mean, relief, .. } = &solved.picture;
+        let Picture { plan, faces, mean, relief, .. } = solved.pictures().nth(surface)?;
         let points = plan.iter().zip(relief).map(|([x1, x2], height)| [*x1, *x2, *height]);
-        SurfacePanel { caption: caption(row) + mean, points: points.collect(), faces: faces.clone() }
+        Some(SurfacePanel { caption: caption(row) + mean, points: points.collect(), faces: faces.clone() })
     };
-    let quantity = rows.first().map_or_else(String::new, |shown| shown.solved.picture.quantity.clone());
+    let picture = rows.first().and_then(|shown| shown.solved.pictures().nth(surface));
+    let quantity = picture.map_or_else(String::new, |picture| picture.quantity.clone());
     Surfaces {
         name,
-        title: format!("{title} of the lower body, without load"),
+        title: format!("{title}, without load"),
         quantity,
         unit: "mm".into(),
-        panels: rows.iter().map(panel).collect(),
+        panels: rows.iter().filter_map(panel).collect(),
     }
     .figure()
 }

@@ -59,7 +59,8 @@ impl Varied {
 
     /// Whether rows that differ in it have different shapes, though they are not optimized.
     pub fn changes_shapes(&self) -> bool {
-        self.field().starts_with("surface") || self.name == HEIGHT_ERROR
+        let field = self.field();
+        field.starts_with("surface") || field.contains("].surface") || self.name == HEIGHT_ERROR
     }
 
     /// Its values, as they are typed.

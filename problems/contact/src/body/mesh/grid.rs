@@ -5,6 +5,8 @@
 pub struct Grid {
     /// Bricks along x₁, x₂, x₃.
     pub cells: [usize; 3],
+    /// Least x₁ and x₂ of the base, mm.
+    pub corner: [f64; 2],
     /// Lengths a, b of the base along x₁, x₂, mm.
     pub size: [f64; 2],
 }
@@ -38,7 +40,12 @@ impl Grid {
 
     /// Position (x₁, x₂) of column (i, j), mm.
     pub fn position(&self, i: usize, j: usize) -> [f64; 2] {
-        [self.size[0] * i as f64 / self.cells[0] as f64, self.size[1] * j as f64 / self.cells[1] as f64]
+        self.moved([self.size[0] * i as f64 / self.cells[0] as f64, self.size[1] * j as f64 / self.cells[1] as f64])
+    }
+
+    /// A place (x₁, x₂) on the base, counted from its corner, mm.
+    pub fn moved(&self, [x1, x2]: [f64; 2]) -> [f64; 2] {
+        [self.corner[0] + x1, self.corner[1] + x2]
     }
 
     /// All columns (i, j) in index order.

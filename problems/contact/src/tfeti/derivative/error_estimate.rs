@@ -8,7 +8,7 @@
 //! From K u + Bᵀλ = f, (I − D) dλ − c D B du = dr and its transpose. Every iterate has G λ = e, so that nothing else is
 //! left over. [`crate::equilibrium::ValueError`] says what the terms are used for.
 
-use crate::equilibrium::{ValueError, law};
+use crate::equilibrium::ValueError;
 use crate::linear::sums::Sums;
 use crate::linear::vector::dot;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
@@ -38,7 +38,7 @@ pub fn value_error(
         let rows = point.rows();
         let outside = &forces[rows.clone()];
         let mut inside = vec![0.0; outside.len()];
-        law::project(outside, point.friction, &mut inside);
+        point.project(outside, &mut inside);
         let moved: Vec<f64> = inside.iter().zip(outside).map(|(inside, force)| inside - force).collect();
         let weights: Vec<f64> = rows.clone().map(|row| j[row] - image[row] - eta[row] / contact.stiffness).collect();
         let term = dot(&weights, &residual[rows.clone()]) + dot(&j[rows], &moved);

@@ -1,12 +1,14 @@
-//! From the adjoint to the positions of the nodes of the lower body: element sums, and the contact rows.
+//! From the adjoint to the positions of the nodes of all bodies: element sums, and the contact rows.
 //!
 //! ```text
-//! ∂J/∂x = −pᵀ (∂K u − ∂f)/∂x − Σ_rows (λ_r p + η_r u)·∂d_r/∂x + Σ_nodes η_N ∂gap/∂x,     η = Q q
+//! ∂J/∂x = −pᵀ (∂K u − ∂f)/∂x − Σ_rows Σ_sides (λ_r p + η_r u)·∂(w d_r)/∂x + Σ_nodes η_N ∂gap/∂x,     η = Q q
 //! ```
-//! Here u and p are the displacements of a contact node less those of its partner.
 
 use crate::body::shape_sensitivity::position_sensitivities;
-use crate::equilibrium::{ContactPoint, ContactRows, RowSensitivities};
+use crate::equilibrium::problem::add_at;
+use crate::equilibrium::row_work::row_sensitivities;
+use crate::equilibrium::{ContactRows, RowSensitivities};
+use crate::shape::Positions;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
 use crate::tfeti::torn::{RowVector, TornModel, TornVector};
 use rayon::prelude::*;
@@ -14,8 +16,8 @@ use rayon::prelude::*;
 /// A solved shape as its derivative needs it.
 #[derive(Debug, Clone, Copy)]
 pub struct SolvedShape<'a> {
-    /// Positions of the nodes of the lower body, mm.
-    pub lower: &'a [[f64; 3]],
+    /// Positions of the nodes of all bodies, mm.
+    pub positions: &'a Positions,
     pub rows: &'a ContactRows,
     /// u over torn dofs, mm.
     pub displacement: &'a TornVector,
@@ -23,47 +25,46 @@ pub struct SolvedShape<'a> {
     pub multipliers: &'a RowVector,
 }
 
-/// ∂J/∂x per node of the lower body.
+/// ∂J/∂x per node of all bodies.
 pub fn shape_derivative(model: &TornModel, shape: SolvedShape<'_>, adjoint: &TornAdjoint) -> Vec<[f64; 3]> {
-    let moves = |node: u32| model.problem.map.moves(node);
+    let (problem, map) = (&model.problem, &model.problem.map);
     // Per subdomain: nodes and their sums, one after the other.
     let sums = |(index, subdomain): (usize, &crate::tfeti::torn::TornSubdomain)| {
-        if subdomain.body != 0 {
+        let number = subdomain.body;
+        if !map.shapes(number) {
             return vec![];
         }
         let (body, piece) = model.piece(index);
         let dofs = model.starts[index]..model.starts[index + 1];
         let displacements = [&shape.displacement.0[dofs.clone()], &adjoint.displacement.0[dofs]];
-        let sums = position_sensitivities(body, piece, shape.lower, displacements, moves);
-        sums.into_iter().flat_map(|(node, [x, y, z])| [f64::from(node), x, y, z]).collect()
+        let moves = |node: u32| map.moves(number, node);
+        let sums = position_sensitivities(body, piece, &shape.positions[number], displacements, moves);
+        let first = map.nodes(number).start as f64;
+        sums.into_iter().flat_map(|(node, [x, y, z])| [first + f64::from(node), x, y, z]).collect()
     };
     let pieces = model.distribution.complete(model.subdomains.par_iter().enumerate().map(sums).collect());
-    let mut result = vec![[0.0; 3]; model.problem.bodies[0].mesh.node_count()];
+    let mut result = problem.no_sensitivities();
     for [node, sums @ ..] in pieces.iter().flat_map(|piece| piece.as_chunks::<4>().0) {
-        (0..3).for_each(|axis| result[*node as usize][axis] += sums[axis]);
+        add_at(&mut result, *node as usize, *sums);
     }
-    let boundary = &model.problem.boundary;
-    shape.rows.pull_back(boundary, &row_sensitivities(model, shape, adjoint), &mut result);
+    let moves = |body: usize, node: u32| map.moves(body, node);
+    let rows = sensitivities_of_rows(model, shape, adjoint);
+    shape.rows.pull_back(&problem.boundary, &rows, moves, |body, node, sensitivity| {
+        add_at(&mut result, problem.node_number(body, node), sensitivity);
+    });
     result
 }
 
-/// ∂J/∂(directions and gap) of every contact node.
-fn row_sensitivities(model: &TornModel, shape: SolvedShape<'_>, adjoint: &TornAdjoint) -> Vec<RowSensitivities> {
-    let eta = adjoint.multipliers.contact();
-    let nodes = model.problem.boundary.points.iter().zip(&model.constraints.normalisation);
-    let mut sensitivities: Vec<RowSensitivities> = nodes
-        .map(|(point, nu)| RowSensitivities { gap: eta[point.start] / nu, ..RowSensitivities::default() })
-        .collect();
-    if model.problem.geometry.is_fixed() {
-        return sensitivities;
-    }
-    let lambda = shape.multipliers.contact();
-    let u = model.contact_displacements(shape.displacement);
-    let p = model.contact_displacements(&adjoint.displacement);
-    let nodes = model.problem.boundary.points.iter().zip(&model.constraints.normalisation).zip(u.iter().zip(&p));
-    for (own, ((point, nu), (u, p))) in sensitivities.iter_mut().zip(nodes) {
-        let of_row = |row: usize| std::array::from_fn(|axis| -(lambda[row] * p[axis] + eta[row] * u[axis]) / nu);
-        own.directions = ContactPoint::rows(point).map(of_row).collect();
-    }
-    sensitivities
+/// ∂J/∂(directions, weights and gap) of every contact node.
+fn sensitivities_of_rows(model: &TornModel, shape: SolvedShape<'_>, adjoint: &TornAdjoint) -> Vec<RowSensitivities> {
+    let boundary = &model.problem.boundary;
+    let physical = |rows: &RowVector| -> Vec<f64> {
+        rows.contact().iter().zip(model.constraints.contact_scales(boundary)).map(|(row, nu)| row / nu).collect()
+    };
+    let (lambda, eta) = (physical(shape.multipliers), physical(&adjoint.multipliers));
+    let changes = !model.problem.geometry.is_fixed();
+    let displacements =
+        changes.then(|| [shape.displacement, &adjoint.displacement].map(|u| model.contact_displacements(u)));
+    let displacements = displacements.as_ref().map(|[u, p]| [u, p]);
+    row_sensitivities((boundary, shape.rows), [&lambda, &eta], displacements)
 }

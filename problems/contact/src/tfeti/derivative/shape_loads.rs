@@ -1,13 +1,14 @@
 //! The forces that changes of the shape cause on the torn bodies.
 //!
 //! ```text
-//! r = −∂(K u − f) per subdomain of the lower body, −Σ_rows λ_r ∂d_r at the contact nodes,     δe = Rᵀ r
+//! r = −∂(K u − f) per subdomain of shaped bodies, −Σ_rows λ_r ∂(w d_r) at the nodes of the rows,     δe = Rᵀ r
 //! ```
 //! The adjoint counterpart is [`shape_derivative`](super::shape_derivative()).
 
 use crate::body::MOTIONS;
 use crate::body::shape_force::shape_forces;
 use crate::equilibrium::RowChange;
+use crate::equilibrium::row_work::changed_forces;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
 use crate::linear::real::Real;
 use crate::shape::Velocities;
@@ -36,19 +37,23 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
         let mut forces = vec![Row::<E, N>::ZERO; model.interface.owned_count()];
         let parts = parts_mut(&mut forces, &system.starts).into_par_iter();
         parts.zip(&model.subdomains).enumerate().for_each(|(index, (forces, subdomain))| {
-            if subdomain.body != 0 {
+            if !model.problem.map.shapes(subdomain.body) {
                 return;
             }
             let (body, piece) = model.piece(index);
             let u = &shape.displacement.0[system.dofs(index)];
-            let columns = shape_forces(body, piece, shape.lower, u, velocities);
+            let number = subdomain.body;
+            let columns = shape_forces((number, body), piece, &shape.positions[number], u, velocities);
             for (dof, force) in forces.iter_mut().enumerate() {
                 columns.iter().enumerate().for_each(|(column, values)| force.set(column, values[dof]));
             }
         });
         if !model.problem.geometry.is_fixed() {
+            let scales = model.constraints.contact_scales(&model.problem.boundary);
+            let lambda: Vec<f64> = shape.multipliers.contact().iter().zip(scales).map(|(row, nu)| row / nu).collect();
             for (column, changes) in changes.iter().enumerate() {
-                let vectors = contact_vectors(model, shape, changes);
+                let rows = (&model.problem.boundary, shape.rows);
+                let vectors = changed_forces(rows, &lambda, changes, model.problem.bodies.len());
                 model.spread_contact(&vectors, |dof, force| {
                     let sum = forces[dof].get(column) + force;
                     forces[dof].set(column, sum);
@@ -73,15 +78,4 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
         let resultants = model.clusters.gather(&system.cluster_resultants(resultants), MOTIONS);
         Self { forces, resultants }
     }
-}
-
-/// −Σ_rows λ_r ∂d_r of every contact node.
-fn contact_vectors(model: &TornModel, shape: SolvedShape<'_>, changes: &[RowChange]) -> Vec<[f64; 3]> {
-    let lambda = shape.multipliers.contact();
-    let nodes = model.problem.boundary.points.iter().zip(&model.constraints.normalisation).zip(changes);
-    let of_node = |((point, nu), change): ((&crate::equilibrium::ContactPoint, &f64), &RowChange)| {
-        let rows = || point.rows().zip(&change.directions);
-        std::array::from_fn(|axis| -rows().map(|(row, turned)| lambda[row] * turned[axis]).sum::<f64>() / nu)
-    };
-    nodes.map(of_node).collect()
 }

@@ -12,6 +12,7 @@
 
 use crate::body::MOTIONS;
 use crate::equilibrium::law::{Friction, Linearization};
+use crate::equilibrium::row_work::row_approaches;
 use crate::equilibrium::{Positions, RowChange, Tangents};
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
@@ -345,15 +346,15 @@ fn approaches<E: Real, const N: usize>(
     shape: SolvedShape<'_>,
     changes: &[Vec<RowChange>],
 ) -> Vec<Row<E, N>> {
-    let mut approaches = vec![Row::ZERO; model.problem.boundary.row_count];
+    let boundary = &model.problem.boundary;
+    let mut approaches = vec![Row::ZERO; boundary.row_count];
     let turned = !model.problem.geometry.is_fixed();
-    let u = if turned { model.contact_displacements(shape.displacement) } else { Vec::new() };
-    for (index, (point, nu)) in model.problem.boundary.points.iter().zip(&model.constraints.normalisation).enumerate() {
+    let u = turned.then(|| model.contact_displacements(shape.displacement));
+    let nodes = boundary.points.iter().zip(&shape.rows.nodes).zip(&model.constraints.normalisation);
+    for (index, ((point, rows), nu)) in nodes.enumerate() {
         for (column, change) in changes.iter().map(|nodes| &nodes[index]).enumerate() {
-            for (place, (row, d)) in point.rows().zip(&change.directions).enumerate() {
-                let gap = if place == 0 { change.gap } else { 0.0 };
-                let along = if turned { (0..3).map(|axis| d[axis] * u[index][axis]).sum::<f64>() } else { 0.0 };
-                approaches[row].set(column, (along - gap) / nu);
+            for (row, approach) in point.rows().zip(row_approaches((point, rows), change, u.as_ref())) {
+                approaches[row].set(column, approach / nu);
             }
         }
     }

@@ -118,7 +118,7 @@ impl<'a> TornContact<'a> {
     pub(crate) fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
         let arguments = self.arguments(iterate);
         let points = self.boundary.points.iter();
-        points.map(|point| Linearization::at(&arguments[point.rows()], point.friction)).collect()
+        points.map(|point| point.linearization(&arguments[point.rows()])).collect()
     }
 
     /// The rows of given derivatives.

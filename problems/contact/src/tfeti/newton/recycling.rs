@@ -11,7 +11,6 @@
 //! it.
 
 use crate::equilibrium::certificate::projection_residual;
-use crate::equilibrium::law::Linearization;
 use crate::linear::dense::DenseCholesky;
 use crate::linear::sums::Sums;
 use crate::linear::vector::{add_scaled, dot, norm};
@@ -159,7 +158,7 @@ impl Recycled {
                 let rows = point.rows();
                 let x: Vec<f64> =
                     rows.map(|row| position.forces[row] + contact.stiffness * position.jumps[row]).collect();
-                Linearization::at(&x, point.friction).derivative(x.len(), point.friction)
+                point.linearization(&x).derivative(x.len(), point.friction)
             })
             .collect();
         let change = |(direction, jumps): (&Direction, &RowVector)| {

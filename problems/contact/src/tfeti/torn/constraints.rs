@@ -4,7 +4,7 @@
 //! ```text
 //! gluing of m copies:  (m − 1) Helmert rows per free direction;   supports: one row per copy and held direction
 //! B_E u = c_E:         0 in rows of gluing, the prescribed displacement in rows of supports
-//! contact:             Σ_sides weight · (mean over the copies along d)/ν,  ν = √(Σ weight²/m)
+//! contact:             Σ_sides weight · (mean over the copies along d)/ν,  ν = √(Σ weight²/m) at the start
 //! λ_physical = λ/ν,  jump_physical = ν·jump:   all rows of a node share ν, so the friction cone keeps its form
 //! ```
 //! B_D Bᵀ = I with stiffness weights between bodies and between the copies of a glued node: B_D gives the softer one
@@ -41,6 +41,8 @@ pub struct Constraints {
     pub prescribed: Vec<f64>,
     /// The contact nodes, from which the contact rows of a shape are made.
     contact: Vec<ContactNode>,
+    /// Body, node and first dofs of the copies of every node in contact rows.
+    pub(super) contact_copies: Vec<(usize, u32, Vec<usize>)>,
     /// The subdomain that owns every packed contact row.
     contact_owners: Vec<usize>,
     /// Whether rows of B or B_c may touch a dof of this process, at any shape.
@@ -97,8 +99,9 @@ impl Constraints {
         let cells = contact_cells(boundary, bodies);
         let nodes: Vec<HashSet<u32>> = cells.iter().map(|cells| cells.keys().copied().collect()).collect();
         let all = SceneRows::new((bodies, &nodes), &copies, numbering, &subdomains, &joints);
+        let points = boundary.points.iter().zip(&start.nodes);
         let contact: Vec<ContactNode> =
-            boundary.points.iter().map(|point| ContactNode::new(point, bodies, &copies, &cells)).collect();
+            points.map(|(point, rows)| ContactNode::new((point, &rows.weights), bodies, &copies, &cells)).collect();
         let dofs: Vec<Vec<usize>> = contact
             .iter()
             .zip(boundary.points.iter().zip(&start.nodes))
@@ -138,6 +141,7 @@ impl Constraints {
             prescribed: all.equality.iter().map(|row| row.value).collect(),
             equality,
             contact,
+            contact_copies: contact_copies(&nodes, &copies),
             contact_owners,
             touched,
         };
@@ -214,50 +218,6 @@ impl Constraints {
         pieces
     }
 
-    /// Σ_sides weight · (mean over the copies) of torn displacements with their ghosts at every contact node, along the
-    /// axes.
-    pub(crate) fn contact_values(
-        &self,
-        boundary: &ContactBoundary,
-        torn: &[f64],
-        interface: &Interface,
-        distribution: &Distribution,
-    ) -> Vec<[f64; 3]> {
-        let own = self.own_contact_rows(distribution);
-        let mut is_own = vec![false; self.contact_owners.len()];
-        own.iter().for_each(|&row| is_own[row] = true);
-        let value = |node: &ContactNode| -> [f64; 3] {
-            std::array::from_fn(|axis| {
-                let dofs = node.shares(axis);
-                dofs.filter_map(|(dof, share)| interface.place(dof).map(|place| share * torn[place])).sum()
-            })
-        };
-        // The normal row of a node carries its three numbers.
-        let mut pieces = vec![Vec::new(); self.contact_owners.len()];
-        for (point, node) in boundary.points.iter().zip(&self.contact) {
-            if is_own[point.start] {
-                pieces[point.start] = value(node).to_vec();
-            }
-        }
-        let own: Vec<Vec<f64>> = own.iter().map(|&row| std::mem::take(&mut pieces[row])).collect();
-        let all = self.complete_contact(&own, distribution);
-        let three = |values: &Vec<f64>| std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0.0));
-        boundary.points.iter().map(|point| three(&all[point.start])).collect()
-    }
-
-    /// Calls `add(dof, force)` with the shares of the dofs of this process in vectors at the contact nodes.
-    pub(crate) fn spread(&self, vectors: &[[f64; 3]], interface: &Interface, mut add: impl FnMut(usize, f64)) {
-        for (node, vector) in self.contact.iter().zip(vectors) {
-            for (axis, component) in vector.iter().enumerate() {
-                for (dof, share) in node.shares(axis) {
-                    if let Some(place) = interface.place(dof).filter(|place| *place < interface.owned_count()) {
-                        add(place, share * component);
-                    }
-                }
-            }
-        }
-    }
-
     /// A vector over all rows, from those of this process.
     pub(crate) fn whole(&self, own: &RowVector, distribution: &Distribution) -> Vec<f64> {
         let (equality, contact) = own.split();
@@ -290,6 +250,17 @@ impl Constraints {
         let nodes = boundary.points.iter().zip(&self.normalisation);
         nodes.flat_map(|(point, &nu)| std::iter::repeat_n(nu, point.row_count()))
     }
+}
+
+/// The copies of the nodes in contact rows, by body and node.
+fn contact_copies(nodes: &[HashSet<u32>], copies: &[Copies]) -> Vec<(usize, u32, Vec<usize>)> {
+    let of_body = |(body, nodes): (usize, &HashSet<u32>)| {
+        let mut nodes: Vec<u32> = nodes.iter().copied().collect();
+        nodes.sort_unstable();
+        let entry = |node: u32| (body, node, copies[body].of(node).to_vec());
+        nodes.into_iter().map(entry).collect::<Vec<_>>()
+    };
+    nodes.iter().enumerate().flat_map(of_body).collect()
 }
 
 /// Which of the dofs of this process, from `first` on, have rows.

@@ -14,24 +14,32 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 impl TornModel {
-    /// Factors the subdomains of a shape. Bodies but the lower one keep their shape: they are factored at the first
-    /// call and shared afterwards. What solvers on the same shelf still hold is taken over. Factorisations are counted
+    /// Factors the subdomains of a shape. Bodies that no control shapes are factored at the first call and shared
+    /// afterwards. What solvers on the same shelf still hold is taken over. Factorisations are counted
     /// over all processes.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
     pub fn factorize(&self, configuration: &Configuration) -> Result<TornSystem, ContactError> {
-        let (lower, mut factored) = self.loaded_body(0, &configuration.positions[0])?;
-        if self.fixed.get().is_none() {
-            let bodies =
-                (1..self.problem.bodies.len()).map(|body| self.loaded_body(body, &configuration.positions[body]));
-            let (bodies, counts): (Vec<LoadedBody>, Vec<usize>) =
-                bodies.collect::<Result<Vec<_>, ContactError>>()?.into_iter().unzip();
-            factored += counts.into_iter().sum::<usize>();
-            // Another thread may have been first; its factors are the same.
-            let _ = self.fixed.set(bodies);
+        let map = &self.problem.map;
+        let loaded = |body: usize| Ok((body, self.loaded_body(body, &configuration.positions[body])?));
+        let mut all: Vec<(usize, LoadedBody)> = Vec::new();
+        let mut factored = 0;
+        for body in map.shaped_bodies() {
+            let (body, (found, count)) = loaded(body)?;
+            factored += count;
+            all.push((body, found));
         }
-        let bodies = || std::iter::once(&lower).chain(self.fixed.get().into_iter().flatten());
+        if self.fixed.get().is_none() {
+            let bodies = (0..self.problem.bodies.len()).filter(|&body| !map.shapes(body)).map(loaded);
+            let bodies = bodies.collect::<Result<Vec<_>, ContactError>>()?;
+            factored += bodies.iter().map(|(_, (_, count))| count).sum::<usize>();
+            // Another thread may have been first; its factors are the same.
+            let _ = self.fixed.set(bodies.into_iter().map(|(body, (found, _))| (body, found)).collect());
+        }
+        all.extend(self.fixed.get().into_iter().flatten().cloned());
+        all.sort_by_key(|(body, _)| *body);
+        let bodies = || all.iter().map(|(_, found)| found);
         let part = |((index, part), load): (&(usize, Arc<SubdomainFactors>), &SubdomainLoad)| {
             (*index, Arc::clone(part), load.clone())
         };

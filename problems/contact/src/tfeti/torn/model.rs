@@ -3,6 +3,7 @@
 use crate::body::MOTIONS;
 use crate::body::{Body, Piece};
 use crate::communication::Communication;
+use crate::equilibrium::row_work::NodeValues;
 use crate::equilibrium::{Configuration, ContactProblem, ContactRows};
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
@@ -64,8 +65,8 @@ pub struct TornModel {
     /// What the factors of the bodies depend on beside positions.
     pub(super) keys: Vec<Arc<TornKey>>,
     pub(super) shelf: Arc<TornShelf>,
-    /// The bodies of fixed shape.
-    pub(super) fixed: OnceLock<Vec<LoadedBody>>,
+    /// The bodies of fixed shape, by number.
+    pub(super) fixed: OnceLock<Vec<(usize, LoadedBody)>>,
     /// Rows of B where they are the same for all shapes.
     fixed_rows: OnceLock<Arc<TornRows>>,
 }
@@ -73,8 +74,8 @@ pub struct TornModel {
 /// A factored body with what the loads of its subdomains in this process do to them.
 pub(super) type LoadedBody = (Arc<Factored<FactoredBody>>, Vec<SubdomainLoad>);
 
-/// Work on a subdomain of a body of fixed shape relative to one of the lower body, whose shape changes: products alone,
-/// no factors and no sums for the derivative.
+/// Work on a subdomain of a body of fixed shape relative to one whose shape changes: products alone, no factors and no
+/// sums for the derivative.
 const FIXED_WEIGHT: f64 = 0.5;
 
 /// Symbolic factors and interior classes by what they depend on.
@@ -93,7 +94,7 @@ impl TornModel {
     pub fn new(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
         let TornOptions { preconditioner, clusters, communication, shelf } = options;
         let numbering = Numbering::new(&problem.bodies, clusters);
-        let [clusters, distribution] = distributions(communication, &numbering, &problem.bodies);
+        let [clusters, distribution] = distributions(communication, &numbering, &problem);
         let rows = problem.rows(&problem.start_positions())?;
         let start = (&rows, problem.geometry.is_fixed());
         let (constraints, interface) =
@@ -192,17 +193,42 @@ impl TornModel {
         self.constraints.multiply(rows, torn, &self.distribution)
     }
 
-    /// Σ_sides weight · (mean over the copies) of torn displacements at every contact node, along the axes.
-    pub fn contact_displacements(&self, torn: &TornVector) -> Vec<[f64; 3]> {
-        let mut torn = torn.clone();
-        self.interface.complete(&self.distribution, &mut torn.0);
-        self.constraints.contact_values(&self.problem.boundary, &torn.0, &self.interface, &self.distribution)
+    /// The mean over the copies of torn displacements at every node in contact rows, along the axes; known to all
+    /// processes.
+    pub(crate) fn contact_displacements(&self, torn: &TornVector) -> NodeValues {
+        let owned = self.distribution.owned();
+        let first = self.numbering.starts()[owned.start];
+        let mut pieces = vec![Vec::new(); owned.len()];
+        for (index, (_, _, copies)) in self.constraints.contact_copies.iter().enumerate() {
+            for &copy in copies {
+                let subdomain = self.numbering.owner(copy);
+                if owned.contains(&subdomain) {
+                    let values = (0..3).map(|axis| torn.0[copy - first + axis] / copies.len() as f64);
+                    pieces[subdomain - owned.start].extend(std::iter::once(index as f64).chain(values));
+                }
+            }
+        }
+        let mut sums = NodeValues::zeros(self.problem.bodies.len());
+        for [index, values @ ..] in self.distribution.complete(pieces).iter().flat_map(|piece| piece.as_chunks::<4>().0)
+        {
+            let (body, node, _) = self.constraints.contact_copies[*index as usize];
+            let sum = sums.0[body].entry(node).or_insert([0.0; 3]);
+            (0..3).for_each(|axis| sum[axis] += values[axis]);
+        }
+        sums
     }
 
-    /// Calls `add(dof, force)` with what vectors at the contact nodes, one per node, are on the dofs of this process:
-    /// the transpose of [`contact_displacements`](Self::contact_displacements).
-    pub fn spread_contact(&self, vectors: &[[f64; 3]], add: impl FnMut(usize, f64)) {
-        self.constraints.spread(vectors, &self.interface, add);
+    /// Calls `add(dof, force)` with what vectors at nodes in contact rows are on the dofs of this process: the
+    /// transpose of [`contact_displacements`](Self::contact_displacements).
+    pub(crate) fn spread_contact(&self, vectors: &NodeValues, mut add: impl FnMut(usize, f64)) {
+        let owned = self.distribution.owned();
+        let first = self.numbering.starts()[owned.start];
+        for (body, node, copies) in &self.constraints.contact_copies {
+            let Some(vector) = vectors.0[*body].get(node) else { continue };
+            for &copy in copies.iter().filter(|copy| owned.contains(&self.numbering.owner(**copy))) {
+                (0..3).for_each(|axis| add(copy - first + axis, vector[axis] / copies.len() as f64));
+            }
+        }
     }
 
     /// Inner products of vectors over rows.
@@ -313,13 +339,13 @@ impl Analyses {
 fn distributions(
     communication: Arc<dyn Communication>,
     numbering: &Numbering,
-    bodies: &[Body],
+    problem: &ContactProblem,
 ) -> [Arc<Distribution>; 2] {
     // Subdomains of different sizes take work in proportion to their nodes, roughly.
     let nodes = |number: usize| {
         let (body, piece) = numbering.place(number);
-        let weight = if body == 0 { 1.0 } else { FIXED_WEIGHT };
-        weight * bodies[body].pieces[piece].nodes.len() as f64
+        let weight = if problem.map.shapes(body) { 1.0 } else { FIXED_WEIGHT };
+        weight * problem.bodies[body].pieces[piece].nodes.len() as f64
     };
     let weight = |cluster| numbering.members(cluster).map(nodes).sum();
     let weights: Vec<f64> = (0..numbering.cluster_count()).map(weight).collect();

@@ -1,7 +1,7 @@
 //! The rows of B, one after the other: what glues, what supports, and what meets the counter surface.
 
 use crate::body::Body;
-use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, Side};
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, NodeRows, Side};
 use crate::tfeti::torn::copies::Copies;
 use crate::tfeti::torn::joints::Joints;
 use crate::tfeti::torn::numbering::Numbering;
@@ -149,64 +149,63 @@ fn weighted(rows: &[Vec<f64>], stiffness: &[f64]) -> Vec<Vec<f64>> {
     }
 }
 
-/// The nodes of a contact node with their copies, shares and free directions: what its rows are made of at any shape.
+/// The nodes in the rows of a contact node with their copies and free directions: what its rows are made of at any
+/// shape.
 #[derive(Debug)]
 pub struct ContactNode {
-    /// ν: all rows of the node are divided by it.
+    /// ν at the start: all rows of the node are divided by it.
     pub normalisation: f64,
     parts: Vec<ContactPart>,
 }
 
 #[derive(Debug)]
 struct ContactPart {
-    weight: f64,
+    /// The place of the node among the sides.
+    side: usize,
     copies: Vec<usize>,
     compliance: f64,
     free: Vec<[f64; 3]>,
 }
 
 impl ContactNode {
-    pub fn new(point: &ContactPoint, bodies: &[Body], copies: &[Copies], cell_of: &[HashMap<u32, u32>]) -> Self {
-        let part = |side: &Side| {
+    /// `weights`: of the sides at the start.
+    pub fn new(
+        (point, weights): (&ContactPoint, &[f64]),
+        bodies: &[Body],
+        copies: &[Copies],
+        cell_of: &[HashMap<u32, u32>],
+    ) -> Self {
+        let part = |(number, side): (usize, &Side)| {
             let (body, cell) = (&bodies[side.body], cell_of[side.body].get(&side.node).copied().unwrap_or(0));
             let compliance = 1.0 / body.solid.material(cell as usize).young_modulus();
             let copies = copies[side.body].of(side.node).to_vec();
-            ContactPart { weight: side.weight, copies, compliance, free: body.free(side.node) }
+            ContactPart { side: number, copies, compliance, free: body.free(side.node) }
         };
-        let parts: Vec<ContactPart> = point.sides.iter().map(part).filter(|part| !part.free.is_empty()).collect();
-        let squared: f64 = parts.iter().map(|part| part.weight * part.weight / part.copies.len() as f64).sum();
+        let parts = point.sides.iter().enumerate().map(part).filter(|part| !part.free.is_empty());
+        let parts: Vec<ContactPart> = parts.collect();
+        let squared: f64 = parts.iter().map(|part| weights[part.side].powi(2) / part.copies.len() as f64).sum();
         Self { normalisation: squared.sqrt(), parts }
     }
 
-    /// A row of B and of B_D for a direction.
-    pub fn row(&self, direction: &[f64; 3]) -> [SparseRow; 2] {
+    /// A row of B and of B_D for a direction and the weights of the sides.
+    pub fn row(&self, direction: &[f64; 3], weights: &[f64]) -> [SparseRow; 2] {
         let nu = self.normalisation;
         // Entries w d/(mν); weights ω w d/(mν) with Σ ω w²|d|²/(mν²) = 1 and ω proportional to the body's compliance.
         let own = |part: &ContactPart| projected(&part.free, direction);
-        let total: f64 = self
-            .parts
-            .iter()
-            .map(|part| {
-                part.compliance * part.weight.powi(2) * square(own(part)) / (part.copies.len() as f64 * nu * nu)
-            })
-            .sum();
-        let (mut row, mut weights) = (Vec::new(), Vec::new());
-        for part in &self.parts {
-            let factor = part.weight / (part.copies.len() as f64 * nu);
+        let parts = || self.parts.iter().filter(|part| weights[part.side] != 0.0);
+        let share = |part: &ContactPart| {
+            part.compliance * weights[part.side].powi(2) * square(own(part)) / (part.copies.len() as f64 * nu * nu)
+        };
+        let total: f64 = parts().map(share).sum();
+        let (mut row, mut weighted) = (Vec::new(), Vec::new());
+        for part in parts() {
+            let factor = weights[part.side] / (part.copies.len() as f64 * nu);
             for &first in &part.copies {
                 row.extend(along(first, &own(part), factor));
-                weights.extend(along(first, &own(part), factor * part.compliance / total));
+                weighted.extend(along(first, &own(part), factor * part.compliance / total));
             }
         }
-        [row, weights]
-    }
-
-    /// Torn dofs along an axis with their shares in the displacement of the node less that of its partners.
-    pub fn shares(&self, axis: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.parts.iter().flat_map(move |part| {
-            let share = part.weight / part.copies.len() as f64;
-            part.copies.iter().map(move |&first| (first + axis, share))
-        })
+        [row, weighted]
     }
 
     /// All torn dofs that rows along some directions may have entries at: of a row along an axis, that axis alone.
@@ -262,8 +261,8 @@ pub fn contact_cells(boundary: &ContactBoundary, bodies: &[Body]) -> Vec<HashMap
 
 /// The contact rows of B and B_D of a shape.
 pub fn contact_rows(nodes: &[ContactNode], rows: &ContactRows) -> Vec<[SparseRow; 2]> {
-    let of_node = |(node, rows): (&ContactNode, &crate::equilibrium::NodeRows)| {
-        rows.directions.iter().map(|direction| node.row(direction)).collect::<Vec<_>>()
+    let of_node = |(node, rows): (&ContactNode, &NodeRows)| {
+        rows.directions.iter().map(|direction| node.row(direction, &rows.weights)).collect::<Vec<_>>()
     };
     nodes.iter().zip(&rows.nodes).flat_map(of_node).collect()
 }

@@ -1,11 +1,11 @@
 //! What every state must satisfy, whatever the mesh: balance, complementarity, friction cone, dissipation.
 
 use super::setting::{ALL, block, load, places, solve, support, torn};
-use crate::common::length;
+use crate::common::{change_counter_surface, length, set_upper_block};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody, hertz, signorini};
+use contact::scene::{CounterSurface, Scene, hertz, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
 fn cross(x: [f64; 3], f: [f64; 3]) -> [f64; 3] {
@@ -21,9 +21,9 @@ fn plate() -> Scene {
     let material = Material::new(1.0e3, 0.3).unwrap();
     let scene = block([10.0; 2], 10.0, [4; 3], material, CounterSurface::Plane { height: 10.0 });
     let mut scene = torn(scene, [2; 3]).with_friction(0.4);
-    scene.lower.supports = vec![support(BlockFace::Bottom, ALL)];
+    scene.bodies[0].supports = vec![support(BlockFace::Bottom, ALL)];
     let loads = vec![load(BlockFace::Top, ON_TOP), load(BlockFace::X1Max, ON_SIDE)];
-    scene.upper = Some(UpperBody { body: BodyScene::new(material, vec![], loads), top: 20.0 });
+    set_upper_block(&mut scene, 20.0, material, vec![], loads);
     scene
 }
 
@@ -72,7 +72,7 @@ fn complementarity_cone_and_dissipation_at_every_node() {
                 assert!(normal >= -1e-11 * force && forces.opening[index] <= 1e-10 * gap);
                 complementarity = complementarity.max((normal * forces.opening[index]).abs() / (force * gap));
                 let (tangential, jump) = (forces.tangential[index], forces.slip[index]);
-                cone = cone.max((length(tangential) - scene.contact.friction * normal) / force);
+                cone = cone.max((length(tangential) - scene.friction() * normal) / force);
                 let power: f64 = tangential.iter().zip(jump).map(|(force, slip)| force * slip).sum();
                 least = least.min(power / (force * slip));
                 dissipated += power;
@@ -93,7 +93,7 @@ fn bodies_that_just_touch_without_a_load_have_no_forces_and_no_displacements() {
     // Overlaps by two roundings of the height, and a body that stands on supports alone.
     let plane = CounterSurface::Plane { height: 20.0 * (1.0 - 2.0 * f64::EPSILON) };
     let mut scene = torn(block([20.0; 2], 20.0, [4; 3], material, plane), [2; 3]).with_friction(0.3);
-    scene.lower.supports = vec![support(BlockFace::Bottom, ALL)];
+    scene.bodies[0].supports = vec![support(BlockFace::Bottom, ALL)];
     let kinds = [SolverKind::Auto, SolverKind::Newton, SolverKind::Direct, SolverKind::AugmentedLagrangian];
     for kind in kinds {
         let (shape, state) = solve(&scene, kind);
@@ -106,7 +106,7 @@ fn bodies_that_just_touch_without_a_load_have_no_forces_and_no_displacements() {
         }
     }
     // An overlap of a nanometre is one that the bodies feel: uniform compression between plane and support.
-    scene.counter_surface = CounterSurface::Plane { height: 20.0 - 1e-6 };
+    change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 20.0 - 1e-6 });
     for kind in kinds {
         let (_, state) = solve(&scene, kind);
         let force = state.forces.total_normal_force();

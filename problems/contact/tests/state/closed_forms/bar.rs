@@ -28,9 +28,10 @@ fn bar(bricks: usize) -> Scene {
     let material = Material::new(MODULUS, 0.0).unwrap();
     let scene = block([LENGTH, WIDTH], HEIGHT, [bricks, 1, 1], material, CounterSurface::Plane { height: HEIGHT });
     let mut scene = scene.with_friction(FRICTION);
-    scene.lower.supports = vec![support(BlockFace::X2Min, SECOND), support(BlockFace::X2Max, SECOND)];
+    scene.bodies[0].supports = vec![support(BlockFace::X2Min, SECOND), support(BlockFace::X2Max, SECOND)];
     let pull = FRICTION * PRESSURE * SLIP_LENGTH / HEIGHT;
-    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE]), load(BlockFace::X1Max, [pull, 0.0, 0.0])];
+    scene.bodies[0].loads =
+        vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE]), load(BlockFace::X1Max, [pull, 0.0, 0.0])];
     scene
 }
 

@@ -22,9 +22,9 @@ const POISSON: f64 = 0.3;
 fn fitted(bricks: usize) -> (f64, f64) {
     let material = Material::new(MODULUS, POISSON).unwrap();
     let mut scene = block([SIDE; 2], SIDE, [bricks; 3], material, CounterSurface::Plane { height: SIDE });
-    scene.lower.supports =
+    scene.bodies[0].supports =
         vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
-    let grid = scene.blocks().unwrap().grid();
+    let grid = scene.bodies[0].block().unwrap().grid();
     let problem = ContactProblem::new(scene).unwrap();
     let (lower, positions) = (&problem.bodies[0], problem.positions(&[SIDE; 4]).unwrap());
     let surface: Vec<u32> = problem.boundary.points.iter().map(|point| point.node).collect();

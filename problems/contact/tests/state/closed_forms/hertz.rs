@@ -21,7 +21,7 @@ fn indented(bricks: usize, depth: f64) -> Scene {
     let material = Material::new(MODULUS, POISSON).unwrap();
     let sphere = CounterSurface::Sphere { apex: SIDE - depth, radius: RADIUS, centre: [0.0; 2] };
     let mut scene = torn(block([SIDE, SIDE], SIDE, [bricks; 3], material, sphere), [2; 3]);
-    scene.lower.supports =
+    scene.bodies[0].supports =
         vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
     scene
 }

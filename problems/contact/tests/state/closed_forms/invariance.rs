@@ -30,7 +30,7 @@ fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
 
 fn scaled(scene: &Scene, factor: f64) -> Scene {
     let mut scene = scene.clone();
-    for body in scene.bodies_mut() {
+    for body in &mut scene.bodies {
         let material = body.material;
         body.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
         for load in &mut body.loads {
@@ -80,8 +80,7 @@ fn mirrored(control: &Vector, swap: bool) -> Vector {
 #[test]
 fn a_mirrored_shape_has_the_mirrored_subgradient() {
     let mut other_hand = hertz().unwrap();
-    let upper = other_hand.upper.as_mut().unwrap();
-    upper.body.loads[1] = Load::traction(BlockFace::X2Max, [0.0, 500.0, -2000.0]);
+    other_hand.bodies[1].loads[1] = Load::traction(BlockFace::X2Max, [0.0, 500.0, -2000.0]);
     // The obstacle of Signorini's example is even about x₂ = b/2; the sphere does not know x₁ from x₂.
     let cases = [(signorini().unwrap(), signorini().unwrap(), false), (hertz().unwrap(), other_hand, true)];
     for (scene, image, swap) in cases {

@@ -8,12 +8,12 @@
 //! of the law in velocities.
 
 use super::setting::{ALL, SECOND, THIRD, block, load, pressures, solve, support, torn};
-use crate::common::length;
+use crate::common::{length, set_upper_block};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::ContactStatus;
-use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody};
+use contact::scene::{CounterSurface, Scene};
 
 const SIDE: f64 = 10.0;
 const FRICTION: f64 = 0.3;
@@ -24,10 +24,10 @@ fn pushed(bricks: usize, traction: f64) -> Scene {
     let scene = block([2.0 * SIDE, SIDE], SIDE, [2 * bricks, bricks, bricks], material, sphere);
     let mut scene = torn(scene, [4, 2, 2]).with_friction(FRICTION);
     let symmetry = support(BlockFace::X2Min, SECOND);
-    scene.lower.supports = vec![symmetry.clone(), support(BlockFace::Bottom, ALL)];
+    scene.bodies[0].supports = vec![symmetry.clone(), support(BlockFace::Bottom, ALL)];
     let supports = vec![symmetry, support(BlockFace::Top, THIRD)];
     let loads = vec![load(BlockFace::Top, [traction, 0.0, 0.0])];
-    scene.upper = Some(UpperBody { body: BodyScene::new(material, supports, loads), top: 2.0 * SIDE });
+    set_upper_block(&mut scene, 2.0 * SIDE, material, supports, loads);
     scene
 }
 

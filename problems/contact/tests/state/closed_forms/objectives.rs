@@ -18,8 +18,8 @@ fn pressed() -> Scene {
     let material = Material::new(MODULUS, 0.31).unwrap();
     let scene = block(SIZE, HEIGHT, [4, 2, 3], material, CounterSurface::Plane { height: HEIGHT });
     let mut scene = torn(scene, [2, 1, 1]);
-    scene.lower.supports = vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND)];
-    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
+    scene.bodies[0].supports = vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND)];
+    scene.bodies[0].loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
     scene
 }
 
@@ -27,7 +27,8 @@ fn pressed() -> Scene {
 fn objectives_of_a_uniformly_pressed_block() {
     let area = SIZE[0] * SIZE[1];
     let whole = Region::WHOLE;
-    let part = Region { lower: [1.0, 0.0, 0.0], upper: [5.0, 2.5, 2.0], body: Some(0), volume: None, face: None };
+    let (lower, upper) = ([1.0, 0.0, 0.0], [5.0, 2.5, 2.0]);
+    let part = Region { lower, upper, body: Some("lower".into()), volume: None, face: None };
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let shape = ContactShape::new(pressed(), kind).unwrap().with_displacements();
         let (problem, start) = (shape.problem(), shape.start());

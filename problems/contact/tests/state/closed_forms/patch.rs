@@ -2,10 +2,11 @@
 //! stands for its tributary area: whole inside, half on edges, a quarter in corners.
 
 use super::setting::{THIRD, block, load, pressures, solve, support, torn};
+use crate::common::set_upper_block;
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
-use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody};
+use contact::scene::{CounterSurface, Scene};
 
 const PRESSURE: f64 = 250.0;
 
@@ -14,17 +15,17 @@ fn one_body() -> Scene {
     let material = Material::new(1.1e5, 0.33).unwrap();
     let scene = block([60.0, 20.0], 30.0, [6, 4, 4], material, CounterSurface::Plane { height: 30.0 });
     let mut scene = torn(scene, [3, 2, 2]);
-    scene.lower.loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
+    scene.bodies[0].loads = vec![load(BlockFace::Bottom, [0.0, 0.0, PRESSURE])];
     scene
 }
 
 fn two_bodies() -> Scene {
     let mut scene = one_body();
-    scene.lower.loads.clear();
-    scene.lower.supports = vec![support(BlockFace::Bottom, THIRD)];
+    scene.bodies[0].loads.clear();
+    scene.bodies[0].supports = vec![support(BlockFace::Bottom, THIRD)];
     let material = Material::new(7.0e4, 0.2).unwrap();
     let loads = vec![load(BlockFace::Top, [0.0, 0.0, -PRESSURE])];
-    scene.upper = Some(UpperBody { body: BodyScene::new(material, vec![], loads), top: 45.0 });
+    set_upper_block(&mut scene, 45.0, material, vec![], loads);
     scene
 }
 

@@ -19,7 +19,7 @@ fn punched(bricks: usize) -> Scene {
     let material = Material::new(1.0e4, 0.3).unwrap();
     let punch = CounterSurface::Punch { height: SIDE - 0.01, half_width: HALF_WIDTH, relief: 1.0, centre: 0.0 };
     let mut scene = block([SIDE, THICKNESS], SIDE, [bricks, 1, bricks], material, punch);
-    scene.lower.supports = vec![
+    scene.bodies[0].supports = vec![
         support(BlockFace::X1Min, FIRST),
         support(BlockFace::X2Min, SECOND),
         support(BlockFace::X2Max, SECOND),

@@ -1,0 +1,139 @@
+//! Mortar weights of the nodes of the slave surface.
+//!
+//! ```text
+//! D_i = Σ_e D_e,i,   m_ij = Σ_e W_e,ij / D_i,   A_i = Σ_e ∫_whole N_i,   covered share = D_i / A_i
+//! ```
+
+use super::Along;
+use super::cover::Cover;
+use super::facet::{Face, Patch};
+use super::frame::Bound;
+use super::normals::{unit, vector_areas};
+use super::pair::Jacobian;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+
+/// Nodes covered less than this have no weights.
+const UNCOVERED: f64 = 1e-14;
+
+/// A node of the slave surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MortarNode {
+    pub node: u32,
+    /// Outward unit normal of the slave surface; zero if the vector areas of its facets cancel.
+    pub normal: [f64; 3],
+    /// D_i: the integral of the shape function over the covered part; 0 if nothing covers the facets of the node.
+    pub area: f64,
+    /// D_i / A_i.
+    pub covered: f64,
+    /// A_i: the integral of the shape function over all facets of the node.
+    pub whole: f64,
+    /// Nodes of the master surface, ascending, and weights that add up to 1; none if `area` is 0. Weights that vanish
+    /// only by chance are listed, since their derivatives do not.
+    pub weights: Vec<(u32, f64)>,
+}
+
+/// The coupling of two surfaces.
+#[derive(Debug)]
+pub struct Mortar {
+    /// All nodes of the slave facets, ascending.
+    pub nodes: Vec<MortarNode>,
+    pub(super) along: Along,
+    pub(super) slave: Patch,
+    /// Its facets are reversed.
+    pub(super) master: Patch,
+    /// Per slave facet; None where it is seen edge-on.
+    pub(super) covers: Vec<Option<Cover>>,
+    /// First place of each node in the list of all weights, and the end.
+    pub(super) starts: Vec<usize>,
+    pub(super) vector_areas: Vec<[f64; 3]>,
+    /// Per slave facet and pair.
+    pub(super) jacobians: OnceLock<Vec<Vec<Jacobian>>>,
+}
+
+impl Mortar {
+    /// Couple the nodes of the slave surface with the master surface.
+    pub fn new(slave: Face<'_>, master: Face<'_>, along: Along) -> Self {
+        let (slave, master) = (Patch::new(slave), Patch::new(master).reversed());
+        let bound = |facet: usize| Bound::of_reversed(&master.corners(facet)[..master.count(facet)]);
+        let bounds: Vec<Bound> = (0..master.facets.len()).map(bound).collect();
+        let cover = |facet: usize| Cover::new(facet, &slave, &master, &bounds, along);
+        let mut covers: Vec<Option<Cover>> = (0..slave.facets.len()).into_par_iter().map(cover).collect();
+        let (starts, columns) = number(&mut covers, &slave, &master);
+        let vector_areas = vector_areas(&slave);
+        let mut mortar =
+            Self { nodes: Vec::new(), along, slave, master, covers, starts, vector_areas, jacobians: OnceLock::new() };
+        mortar.nodes = mortar.assembled(&columns);
+        mortar
+    }
+
+    /// Slave facets in a plane, with their numbers.
+    pub(super) fn covers(&self) -> impl Iterator<Item = (usize, &Cover)> {
+        self.covers.iter().enumerate().filter_map(|(facet, cover)| Some((facet, cover.as_ref()?)))
+    }
+
+    fn assembled(&self, columns: &[usize]) -> Vec<MortarNode> {
+        let count = self.slave.nodes.len();
+        let (mut areas, mut whole) = (vec![0.0; count], vec![0.0; count]);
+        let mut values = vec![0.0; columns.len()];
+        for (facet, cover) in self.covers() {
+            let sums = cover.basis.as_ref().map_or([0.0; 4], |basis| basis.sums);
+            for (corner, &node) in self.slave.facets[facet].corners().iter().enumerate() {
+                areas[node] += sums[corner];
+                whole[node] += cover.whole[corner];
+            }
+            self.scatter(facet, cover, |slot, pair, i, j| values[slot] += cover.pairs[pair].weights[i][j]);
+        }
+        let normal = |node: usize| match self.along {
+            Along::X3 => [0.0, 0.0, 1.0],
+            Along::Normals => unit(self.vector_areas[node]),
+        };
+        let node = |node: usize| {
+            let covered = areas[node] > UNCOVERED * whole[node];
+            let area = if covered { areas[node] } else { 0.0 };
+            let places = if covered { self.starts[node]..self.starts[node + 1] } else { 0..0 };
+            let weight = |place: usize| (self.master.nodes[columns[place]], values[place] / area);
+            MortarNode {
+                node: self.slave.nodes[node],
+                normal: normal(node),
+                area,
+                covered: if covered { area / whole[node] } else { 0.0 },
+                whole: whole[node],
+                weights: places.map(weight).collect(),
+            }
+        };
+        (0..count).map(node).collect()
+    }
+
+    /// Visit the entries of W of a slave facet: place in the list of all weights, pair, row, column.
+    pub(super) fn scatter(&self, facet: usize, cover: &Cover, mut visit: impl FnMut(usize, usize, usize, usize)) {
+        for (number, pair) in cover.pairs.iter().enumerate() {
+            for i in 0..self.slave.count(facet) {
+                (0..self.master.count(pair.master)).for_each(|j| visit(pair.slots[i][j], number, i, j));
+            }
+        }
+    }
+}
+
+/// Number the weights by slave node and master node: first places of the nodes, master node of each place.
+fn number(covers: &mut [Option<Cover>], slave: &Patch, master: &Patch) -> (Vec<usize>, Vec<usize>) {
+    let mut keys: Vec<(usize, usize)> = Vec::new();
+    for (facet, cover) in covers.iter().enumerate() {
+        for pair in cover.iter().flat_map(|cover| &cover.pairs) {
+            let columns = master.facets[pair.master].corners();
+            let rows = slave.facets[facet].corners();
+            keys.extend(rows.iter().flat_map(|&row| columns.iter().map(move |&column| (row, column))));
+        }
+    }
+    keys.sort_unstable();
+    keys.dedup();
+    for (facet, cover) in covers.iter_mut().enumerate() {
+        for pair in cover.iter_mut().flat_map(|cover| &mut cover.pairs) {
+            let rows = slave.facets[facet].pick_numbers();
+            let columns = master.facets[pair.master].pick_numbers();
+            pair.slots = rows.map(|row| columns.map(|column| keys.partition_point(|&key| key < (row, column))));
+        }
+    }
+    let starts = (0..=slave.nodes.len()).map(|node| keys.partition_point(|&(row, _)| row < node)).collect();
+    (starts, keys.into_iter().map(|(_, column)| column).collect())
+}

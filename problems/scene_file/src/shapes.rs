@@ -1,0 +1,97 @@
+//! Height surfaces of a scene file: what they are, where they start, what lies opposite to them.
+
+use crate::case::required;
+use crate::grid_file;
+use crate::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
+use contact::error::SceneError;
+use contact::scene::CounterSurface;
+use contact::shape::{HeightShape, SplineKind};
+use std::path::Path;
+
+/// Degree of the paper's B-splines.
+const DEFAULT_DEGREE: usize = 3;
+
+/// A height surface over a base of this size, and its controls at the start where they are not all alike.
+pub(crate) fn heights(
+    (surface, admissible): (&SurfaceSection, &AdmissibleSection),
+    size: [f64; 2],
+    folder: &Path,
+) -> Result<(HeightShape, Option<Vec<f64>>), SceneError> {
+    let (start_height, start) = start(&surface.start, size, surface.control_points, folder)?;
+    let shape = HeightShape {
+        face: surface.face,
+        spline: spline(surface)?,
+        control_points: surface.control_points,
+        bounds: admissible.bounds(),
+        start_height,
+        fairness: surface.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
+    };
+    Ok((shape, start))
+}
+
+fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
+    match (section.spline, section.degree) {
+        (SplineName::Bspline, degree) => Ok(SplineKind::BSpline(degree.unwrap_or(DEFAULT_DEGREE))),
+        (SplineName::Bezier, None) => Ok(SplineKind::Bezier),
+        (SplineName::Bezier, Some(degree)) => {
+            Err(SceneError::out_of_range("surface.degree", degree, "no degree with surface.spline = \"bezier\""))
+        }
+    }
+}
+
+/// A surface of heights, or in space; `field` stands in messages.
+pub(crate) fn counter_surface(
+    field: &str,
+    section: &CounterSection,
+    base: Option<[f64; 2]>,
+    folder: &Path,
+) -> Result<CounterSurface, SceneError> {
+    Ok(match section {
+        &CounterSection::Plane { height } => CounterSurface::Plane { height },
+        &CounterSection::Waves { base, first, second, period } => {
+            CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] }
+        }
+        &CounterSection::Sphere { apex, radius, centre } => {
+            CounterSurface::Sphere { apex, radius, centre: centre.unwrap_or_default() }
+        }
+        CounterSection::Grid { file, origin, size } => {
+            let size = size.or(base);
+            let size = *required(&format!("{field}.size"), size.as_ref(), "the lengths of the grid along x1, x2 (mm)")?;
+            let grid = grid_file::read(&folder.join(file), size, "mm")?;
+            CounterSurface::Grid(grid.at(origin.unwrap_or_default()))
+        }
+        &CounterSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
+        &CounterSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
+        &CounterSection::Cylinder { point, axis, radius, side } => {
+            CounterSurface::Cylinder { point, axis, radius, side }
+        }
+    })
+}
+
+/// Start height of the scene, and the controls where they differ from it.
+fn start(
+    section: &StartSection,
+    size: [f64; 2],
+    counts: [usize; 2],
+    folder: &Path,
+) -> Result<(f64, Option<Vec<f64>>), SceneError> {
+    let sampled = |surface: CounterSurface| {
+        let along = |axis: usize, index: usize| size[axis] * index as f64 / (counts[axis].max(2) - 1) as f64;
+        let places = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
+        places.map(|(i, j)| surface.height(along(0, i), along(1, j))).collect::<Vec<f64>>()
+    };
+    let controls = match section {
+        &StartSection::Plane { height } => return Ok((height, None)),
+        &StartSection::Waves { base, first, second, period } => {
+            sampled(CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] })
+        }
+        StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?)),
+        StartSection::Controls { heights } => heights.clone(),
+    };
+    let expected = counts[0] * counts[1];
+    if controls.len() != expected {
+        return Err(SceneError::WrongCount { what: "surface.start.heights".into(), expected, found: controls.len() });
+    }
+    let mean = controls.iter().sum::<f64>() / expected as f64;
+    Ok((mean, Some(controls)))
+}

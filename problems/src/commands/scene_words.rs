@@ -1,0 +1,142 @@
+//! Scenes in words: bodies with their meshes, contacts with their sides.
+
+use crate::commands::facts::Fact;
+use crate::commands::failure::Failure;
+use crate::commands::numbers::exact;
+use contact::scene::{BodyFace, BodyScene, Geometry, Master, Scene};
+use serde_json::json;
+
+/// Whether a scene is one of the short form of scene files: a mesh or a block below an obstacle or a second block.
+pub fn is_short(scene: &Scene) -> bool {
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let [contact] = &scene.contacts[..] else { return false };
+    let known = match contact.master_face() {
+        None => matches!(names[..], ["body"] | ["lower"]),
+        Some(master) => names == ["lower", "upper"] && master.body == 1,
+    };
+    known && contact.slave.body == 0 && !contact.is_tied() && scene.bodies[0].shape.is_some()
+}
+
+/// What a body is called in a sentence: "lower body", or "body" where there is only one.
+pub fn body(name: &str) -> String {
+    if name == "body" { name.to_owned() } else { format!("{name} body") }
+}
+
+/// What names of files call a body, different for all bodies: "lower".
+pub fn stem(scene: &Scene, body: usize) -> String {
+    let plain = |name: &str| name.replace(|c: char| !(c.is_ascii_alphanumeric() || c == '-' || c == '_'), "_");
+    let mut stems: Vec<String> = Vec::new();
+    for own in &scene.bodies[..=body] {
+        let mut stem = plain(&own.name);
+        while stems.contains(&stem) {
+            stem.push('_');
+        }
+        stems.push(stem);
+    }
+    stems.pop().unwrap_or_default()
+}
+
+/// "12×12×12 bricks", or "1881 cells"; of bodies that differ, one after the other.
+pub fn mesh(scene: &Scene) -> String {
+    distinct(scene.bodies.iter().map(mesh_of)).join(", ")
+}
+
+/// "2×2×2 subdomains each", or "about 5 pieces"; of bodies that differ, one after the other.
+pub fn pieces(scene: &Scene) -> String {
+    distinct(scene.bodies.iter().map(pieces_of)).join(", ")
+}
+
+/// The friction coefficients of the contacts that may slide, in their order: "0.3", or "0.3, 0".
+pub fn friction(scene: &Scene) -> String {
+    let contacts = scene.contacts.iter().filter(|contact| !contact.is_tied());
+    match distinct(contacts.map(|contact| exact(contact.friction))) {
+        found if found.is_empty() => exact(0.0),
+        found => found.join(", "),
+    }
+}
+
+/// The sides of a contact: "top of lower on bottom of upper", or "top of lower on the obstacle".
+pub fn sides(scene: &Scene, contact: usize) -> String {
+    let contact = &scene.contacts[contact];
+    let face = |face: &BodyFace| format!("{} of {}", face.face, scene.bodies[face.body].name);
+    let (slave, word) = (face(&contact.slave), if contact.is_tied() { "glued to" } else { "on" });
+    match &contact.master {
+        Master::Obstacle(_) => format!("{slave} {word} the obstacle"),
+        Master::Body(master) => format!("{slave} {word} {}", face(master)),
+    }
+}
+
+/// What pictures and tables say of a contact: nothing where there is only one.
+pub fn contact_label(scene: &Scene, contact: usize) -> String {
+    if scene.contacts.len() == 1 { String::new() } else { format!("contact {}: {}", contact + 1, sides(scene, contact)) }
+}
+
+/// The bodies and the contacts of a scene: one line for a scene of the short form, else a line for each of them.
+///
+/// # Errors
+/// [`Failure::Computation`] for a value that has no JSON.
+pub fn facts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
+    let bodies = if scene.bodies.len() == 1 { "1 body".to_owned() } else { format!("{} bodies", scene.bodies.len()) };
+    let (mesh, pieces, friction) = (mesh(scene), pieces(scene), friction(scene));
+    let fact = Fact::new("", "scene", format!("{bodies} of {mesh}, {pieces}, friction {friction}"), "");
+    if is_short(scene) { Ok(vec![fact]) } else { Ok([vec![fact], parts(scene)?].concat()) }
+}
+
+/// A line for every body and for every contact, and both as lists in JSON.
+fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
+    let mut facts = Vec::new();
+    for body in &scene.bodies {
+        let shape = if body.shape.is_some() { format!(", {} controls", body.control_count()) } else { String::new() };
+        facts.push(Fact::new("", &format!("body {}", body.name), format!("{}{shape}", mesh_of(body)), ""));
+    }
+    for (index, contact) in scene.contacts.iter().enumerate() {
+        let friction = if contact.is_tied() { String::new() } else { format!(", friction {}", exact(contact.friction)) };
+        let words = sides(scene, index) + &friction;
+        facts.push(Fact::new("", &format!("contact {}", index + 1), words, ""));
+    }
+    let bodies: Vec<_> = scene
+        .bodies
+        .iter()
+        .map(|body| json!({ "name": body.name, "mesh": mesh_of(body), "controls": body.control_count() }))
+        .collect();
+    let side = |face: &BodyFace| json!({ "body": scene.bodies[face.body].name, "face": face.face });
+    let contacts: Vec<_> = scene
+        .contacts
+        .iter()
+        .map(|contact| {
+            let master = contact.master_face().map_or_else(|| json!("obstacle"), side);
+            let (friction, tied) = (contact.friction, contact.is_tied());
+            json!({ "slave": side(&contact.slave), "master": master, "friction": friction, "tied": tied })
+        })
+        .collect();
+    facts.extend([Fact::json("bodies", &bodies)?, Fact::json("contacts", &contacts)?]);
+    Ok(facts)
+}
+
+fn mesh_of(body: &BodyScene) -> String {
+    match &body.geometry {
+        Geometry::Block(block) => format!("{} bricks", joined(block.bricks)),
+        Geometry::Mesh(geometry) => format!("{} cells", geometry.mesh.cell_count()),
+    }
+}
+
+fn pieces_of(body: &BodyScene) -> String {
+    match &body.geometry {
+        Geometry::Block(block) => format!("{} subdomains each", joined(block.subdomains)),
+        Geometry::Mesh(geometry) => format!("about {} pieces", geometry.piece_count()),
+    }
+}
+
+/// Texts in their order, each once.
+fn distinct(texts: impl Iterator<Item = String>) -> Vec<String> {
+    texts.fold(Vec::new(), |mut found, text| {
+        if !found.contains(&text) {
+            found.push(text);
+        }
+        found
+    })
+}
+
+fn joined(counts: [usize; 3]) -> String {
+    counts.map(|count| count.to_string()).join("×")
+}
