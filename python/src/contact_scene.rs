@@ -1,7 +1,7 @@
 //! Contact scenes as objectives: Θ, its subgradient, pressures and statuses at a shape, and the optimal shape.
 
 use crate::contact_mesh::MeshArrays;
-use crate::contact_state::{StateArrays, grid_of};
+use crate::contact_state::StateArrays;
 use crate::convert;
 use crate::failure::Failure;
 use crate::outcome::RunOutcome;
@@ -99,6 +99,10 @@ impl ContactScene {
         merge(&mut table, fields);
         let mesh = mesh.map(|mesh| mesh.mesh()).transpose()?;
         if mesh.is_some() {
+            if table.get("body").is_some_and(toml::Value::is_array) {
+                let allowed = "one mesh takes the place of the table [body]; bodies of a list have files";
+                return Err(input(SceneError::out_of_range("mesh", "given for a list of bodies", allowed)));
+            }
             let [.., name] = FILES;
             merge(&mut table, toml::toml! { body = { mesh = name } });
         }
@@ -140,7 +144,7 @@ impl ContactScene {
     /// Controls at the start, mm.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let start = self.case.start.clone().unwrap_or_else(|| self.case.scene.shape.start());
+        let start = self.case.start.clone().unwrap_or_else(|| self.case.scene.start());
         convert::shaped(py, start, &self.control_shape())
     }
 
@@ -290,13 +294,13 @@ fn set_cases(
     let cases = PyDict::new(py);
     for (case, (warnings, fields)) in checked.iter().enumerate() {
         let (own, state) = (PyDict::new(py), &states[case]);
-        let grid = grid_of(objective.cases().case(case).problem());
+        let problem = objective.cases().case(case).problem();
         for result in [Some(&own), Some(result).filter(|_| case == worst)].into_iter().flatten() {
             result.set_item("warnings", in_words(warnings))?;
             result.set_item("total_force", state.forces.total_normal_force())?;
             result.set_item("residual", state.forces.residuals.largest())?;
             result.set_item("weakly_active", convert::json(&state.forces.kink)?)?;
-            StateArrays { fields, forces: &state.forces, grid }.set(result)?;
+            StateArrays { problem, fields, forces: &state.forces }.set(result)?;
         }
         own.set_item("weighted_value", weighted[case])?;
         cases.set_item(objective.cases().name(case), own)?;

@@ -272,9 +272,12 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
         let mut coordinates = Matrix::identity(start.len(), start.len());
+        let scene = &self.solver().problem().scene;
         let mut first = 0;
-        for body in &self.solver().problem().scene.bodies {
-            let count = body.control_count();
+        for body in scene.bodies.iter().filter(|body| body.shape.is_some()) {
+            // Fewer controls than those of the scene are those of a coarser net of its only surface.
+            let is_only = body.control_count() == scene.control_count();
+            let count = if is_only { start.len() } else { body.control_count() };
             if body.heights().is_some() {
                 let stretch = (start.rows(first, count).mean().abs() / first_step).max(1.0);
                 coordinates.view_mut((first, first), (count, count)).add_scalar_mut((stretch - 1.0) / count as f64);

@@ -5,7 +5,8 @@ use crate::general::general_scene;
 use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
 use crate::mesh_file;
-use crate::short_form::{block_scene, mesh_scene};
+use crate::region::check_body;
+use crate::short_form::{block_scene, mesh_scene, named};
 use crate::{AccuracyName, MethodName, Objective, OptimizerSection, OutputSection, SceneFile};
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
@@ -86,15 +87,20 @@ impl Case {
 
     fn of_parts(file: &SceneFile, folder: &Path, parts: Parts) -> Result<Self, SceneError> {
         let Parts { scene, start, notes } = parts;
-        scene.validate()?;
+        scene.validate().map_err(|error| named(file, error))?;
         check_continuation(&file.optimizer, !scene.is_of_blocks())?;
-        let objective = Objective::new(&file.objective, file.size, folder)?;
+        let (mut objective, mut limited) = (file.objective.clone(), file.limit.clone());
+        check_body("objective.region", objective.region.as_mut(), &scene)?;
+        for (index, limit) in limited.iter_mut().enumerate() {
+            check_body(&format!("limit[{index}].region"), limit.region.as_mut(), &scene)?;
+        }
+        let objective = Objective::new(&objective, base(&scene), folder)?;
         if let (Objective::Deviation(wanted), Some((block, heights))) = (&objective, scene.shaped_block()) {
             let height = heights.start_height;
             wanted.at(&block.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
         let cases = cases(file, &scene)?;
-        let limits = limits(&file.limit, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
+        let limits = limits(&limited, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
         let limits = limits.into_iter().map(|limit| of_first_equal(limit, &cases)).collect::<Vec<_>>();
         let tolerance = file.optimizer.tolerance.unwrap_or_else(|| usual_tolerance(&limits));
         let method = method(&objective, file.optimizer.method, cases.len() > 1 || !limits.is_empty())?;
@@ -191,6 +197,11 @@ impl Case {
         self.cases = self.cases.into_iter().map(changed).collect();
         self
     }
+}
+
+/// Least corner and lengths of the base over which a file of numbers is given: that of the only optimized block.
+fn base(scene: &Scene) -> Option<[[f64; 2]; 2]> {
+    scene.shaped_block().map(|(block, _)| [block.corner, block.size])
 }
 
 /// A scene with what goes beside it.

@@ -34,7 +34,11 @@ pub(crate) fn general_scene(file: &SceneFile, bodies: &[PartSection], folder: &P
         }
     }
     let Either::Several(pairs) = &file.contact else {
-        return Err(SceneError::out_of_range("contact", "a table", "[[contact]] beside [[body]]: one table per contact"));
+        return Err(SceneError::out_of_range(
+            "contact",
+            "a table",
+            "[[contact]] beside [[body]]: one table per contact",
+        ));
     };
     let (mut found, mut start, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     let mut starts_elsewhere = false;
@@ -81,15 +85,15 @@ fn part(
         }
     };
     let geometry = match (&section.block, &section.mesh) {
-        (Some(block), None) => {
-            Geometry::Block(block_of(at, block, shaped.as_ref().map(|(shape, _)| shape), folder)?)
-        }
+        (Some(block), None) => Geometry::Block(block_of(at, block, shaped.as_ref().map(|(shape, _)| shape), folder)?),
         (None, Some(file)) => {
             let MeshFile { mesh, notes: own } = mesh_file::read(&folder.join(file), section.unit)?;
             notes.extend(own);
             Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: section.pieces })
         }
-        (Some(_), Some(_)) => return Err(SceneError::out_of_range(at, "block and mesh", "a block or a mesh, not both")),
+        (Some(_), Some(_)) => {
+            return Err(SceneError::out_of_range(at, "block and mesh", "a block or a mesh, not both"));
+        }
         (None, None) => return Err(SceneError::out_of_range(at, "neither block nor mesh", "a block or a mesh")),
     };
     let given = (section.material.clone(), section.materials.as_slice());
@@ -107,12 +111,7 @@ fn part(
     Ok((body, start))
 }
 
-fn block_of(
-    at: &str,
-    block: &BlockSection,
-    shaped: Option<&HeightShape>,
-    folder: &Path,
-) -> Result<Block, SceneError> {
+fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder: &Path) -> Result<Block, SceneError> {
     let face = |name: &str, face: ShapedFace, given: Option<&crate::CounterSection>| {
         let (field, shaped) = (format!("{at}.block.{name}"), shaped.filter(|shape| shape.face == face));
         match (given, shaped) {
@@ -149,7 +148,8 @@ fn pair(
         let names = bodies.iter().map(|body| body.name.as_str());
         Ok::<_, SceneError>(BodyFace::new(find(&format!("{at}.{field}.body"), &section.body, names)?, &*section.face))
     };
-    let refused = |field: &str, allowed: &str| Err(SceneError::out_of_range(format!("{at}.{field}"), "a value", allowed));
+    let refused =
+        |field: &str, allowed: &str| Err(SceneError::out_of_range(format!("{at}.{field}"), "a value", allowed));
     let (slave, master) = match (&section.slave, &section.master, &section.faces, &section.obstacle) {
         (Some(slave), Some(master), None, None) => (face("slave", slave)?, Master::Body(face("master", master)?)),
         (Some(slave), None, None, Some(obstacle)) => {

@@ -48,8 +48,8 @@ pub use parts::{BlockSection, FaceSection, PairSection, PartSection};
 pub use region::RegionSection;
 pub use schema::schema;
 pub use setting::{Setting, check_path};
-pub use short_form::default_subdomains;
 pub use settings::{AccuracyName, MeshSection, MethodName, OptimizerSection, OutputSection, SolverSection};
+pub use short_form::default_subdomains;
 pub use surfaces::{AdmissibleSection, CounterSection, FairnessSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;
 pub use text::read_text;
@@ -134,9 +134,12 @@ pub struct SceneFile {
 pub fn is_copy(name: &str) -> bool {
     FILES.iter().any(|copy| {
         let Some((stem, end)) = copy.rsplit_once('.') else { return false };
-        let inner = name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(end)).and_then(|rest| rest.strip_suffix('.'));
+        let inner =
+            name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(end)).and_then(|rest| rest.strip_suffix('.'));
         let digits = |text: &str| text.trim_start_matches("-bottom").trim_start_matches("-top").to_owned();
-        inner.is_some_and(|rest| rest.is_empty() || digits(rest).strip_prefix('-').is_some_and(|n| n.parse::<usize>().is_ok()))
+        inner.is_some_and(|rest| {
+            rest.is_empty() || digits(rest).strip_prefix('-').is_some_and(|n| n.parse::<usize>().is_ok())
+        })
     })
 }
 
@@ -193,7 +196,10 @@ impl SceneFile {
                     if let Some(StartSection::Grid { file }) = section.surface.as_mut().map(|own| &mut own.start) {
                         files.push((numbered(&start, index, ""), file));
                     }
-                    let faces = section.block.iter_mut().flat_map(|block| [("bottom", &mut block.bottom), ("top", &mut block.top)]);
+                    let faces = section
+                        .block
+                        .iter_mut()
+                        .flat_map(|block| [("bottom", &mut block.bottom), ("top", &mut block.top)]);
                     for (name, face) in faces {
                         if let Some(CounterSection::Grid { file, .. }) = face {
                             files.push((numbered(&start, index, name), file));

@@ -2,6 +2,7 @@
 
 use crate::bodies::{LoadSection, MaterialSection, SupportSection};
 use crate::either::Either;
+use crate::short_form::named;
 use crate::{SceneFile, bodies};
 use contact::error::SceneError;
 use contact::load_cases::Over;
@@ -185,7 +186,7 @@ impl CaseSection {
             self.move_counter_surfaces(offset, &mut scene);
         }
         let within = |source| SceneError::InFile { file: format!("case \"{}\"", self.name), source: Box::new(source) };
-        scene.validate().map_err(within)?;
+        scene.validate().map_err(|error| within(named(file, error)))?;
         Ok(scene)
     }
 

@@ -137,7 +137,11 @@ pub enum Objective {
 
 impl Objective {
     /// The objective of a section; a grid that it names is looked up in `folder`.
-    pub(crate) fn new(section: &ObjectiveSection, size: Option<[f64; 2]>, folder: &Path) -> Result<Self, SceneError> {
+    pub(crate) fn new(
+        section: &ObjectiveSection,
+        base: Option<[[f64; 2]; 2]>,
+        folder: &Path,
+    ) -> Result<Self, SceneError> {
         refuse_foreign_fields(section)?;
         let exponent = |default: f64| section.exponent.unwrap_or(default);
         Ok(match section.measure {
@@ -150,11 +154,11 @@ impl Objective {
                 None => return Err(missing("objective.wanted", "a table with form = \"formula\" or form = \"grid\"")),
                 Some(WantedSection::Formula { pressure }) => WantedPressure::formula(pressure)?,
                 Some(WantedSection::Grid { file }) => {
-                    let size = size.ok_or_else(|| {
+                    let [corner, size] = base.ok_or_else(|| {
                         let allowed = "\"formula\" for the body of a mesh, which has no base";
                         SceneError::out_of_range("objective.wanted.form", "grid", allowed)
                     })?;
-                    WantedPressure::Grid(grid_file::read(&folder.join(file), size, "MPa")?)
+                    WantedPressure::Grid(grid_file::read(&folder.join(file), size, "MPa")?.at(corner))
                 }
             }),
             MeasureName::OpenArea => match section.pressure {
@@ -223,8 +227,8 @@ impl Objective {
 
 /// Places of the contact nodes at the start, mm.
 fn contact_places(problem: &ContactProblem) -> Vec<[f64; 3]> {
-    let positions = &problem.start_positions()[0];
-    problem.boundary.points.iter().map(|point| positions[point.node as usize]).collect()
+    let positions = problem.start_positions();
+    problem.boundary.contact_points().iter().map(|point| positions[point.body][point.node as usize]).collect()
 }
 
 fn missing(field: &str, allowed: &str) -> SceneError {

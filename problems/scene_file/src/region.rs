@@ -2,6 +2,8 @@
 
 use contact::cost::Region;
 use contact::error::SceneError;
+use contact::names::find;
+use contact::scene::Scene;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +32,21 @@ pub struct RegionSection {
     /// A face, whose nodes alone belong to the region; for `displacement`. Default none: the nodes of all its cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub face: Option<String>,
+}
+
+/// Checks the body of a region that messages call `field`; that of a mesh alone may also be called the lower one.
+pub(crate) fn check_body(field: &str, section: Option<&mut RegionSection>, scene: &Scene) -> Result<(), SceneError> {
+    let Some(name) = section.and_then(|section| section.body.as_mut()) else { return Ok(()) };
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let field = format!("{field}.body");
+    if names == ["body"] && name == "lower" {
+        "body".clone_into(name);
+        return Ok(());
+    }
+    if matches!(names[..], ["body"] | ["lower"]) && name == "upper" {
+        return Err(SceneError::out_of_range(field, name, "a body of the scene, which has no upper one"));
+    }
+    find(&field, name, names.into_iter()).map(|_| ())
 }
 
 /// The region of a section that messages call `field`; the whole bodies without one.

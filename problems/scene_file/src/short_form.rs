@@ -8,9 +8,7 @@ use crate::{ContactSection, MeshBodySection, SceneFile};
 use contact::body::load_size;
 use contact::body::mesh::{Mesh, bounding_box};
 use contact::error::SceneError;
-use contact::scene::{
-    Block, BodyFace, BodyScene, CounterSurface, Geometry, Master, MeshGeometry, Scene,
-};
+use contact::scene::{Block, BodyFace, BodyScene, CounterSurface, Geometry, Master, MeshGeometry, NormalKind, Scene};
 use contact::shape::{ShapeScene, ShapedFace};
 use std::path::Path;
 use std::sync::Arc;
@@ -18,6 +16,24 @@ use std::sync::Arc;
 /// The contact of the short form.
 fn contact_table(file: &SceneFile) -> Result<&ContactSection, SceneError> {
     required("contact", file.contact.one(), "a table, [contact], without [[body]]")
+}
+
+/// A refused field as a file in the short form calls it: both blocks have the same base and bricks, and the bottom of
+/// the upper one is the counter surface.
+pub(crate) fn named(file: &SceneFile, error: SceneError) -> SceneError {
+    let SceneError::OutOfRange { field, value, allowed } = error else { return error };
+    let own = ["lower.", "upper."].iter().find_map(|body| field.strip_prefix(body)).filter(|_| file.body.is_none());
+    let field = match own {
+        Some(rest) if rest.starts_with("bricks") || rest.starts_with("subdomains") => format!("mesh.{rest}"),
+        Some(rest) if rest.starts_with("size") => rest.to_owned(),
+        Some(rest) if rest.starts_with("bottom") => rest.replacen("bottom", "counter_surface", 1),
+        _ => field.clone(),
+    };
+    let allowed = match own {
+        Some("top") => allowed.replacen("above the bottom", "above the counter surface", 1),
+        _ => allowed,
+    };
+    SceneError::out_of_range(field, value, allowed)
 }
 
 /// The scene of one or two blocks.
@@ -46,6 +62,14 @@ pub(crate) fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, Scen
     }];
     let master = match &file.upper {
         None => Master::Obstacle(counter),
+        Some(_) if !counter.has_heights() && contact.normal == Some(NormalKind::Surface) => {
+            let allowed = "a height over x1 and x2 below an upper body, whose lower surface it is";
+            return Err(SceneError::out_of_range("counter_surface", "a surface in space", allowed));
+        }
+        Some(_) if !counter.has_heights() => {
+            let allowed = "\"surface\" with a counter surface that is no height over x1 and x2";
+            return Err(SceneError::out_of_range("contact.normal", "\"x3\"", allowed));
+        }
         Some(upper) => {
             let geometry =
                 Geometry::Block(Block { bottom: counter, top: CounterSurface::Plane { height: upper.top }, ..own });

@@ -163,9 +163,9 @@ fn prescribed_displacements_and_interference_reach_the_scene() {
     let contact = "[contact]\ninterference = 0.02\n";
     let file = SceneFile::parse(&scene.replacen("[contact]\n", contact, 1), "my.toml").unwrap();
     let scene = Case::new(&file, &folder()).unwrap().scene;
-    let held: Vec<Held> = scene.lower.supports.iter().take(2).map(|support| support.held).collect();
+    let held: Vec<Held> = scene.bodies[0].supports.iter().take(2).map(|support| support.held).collect();
     assert_eq!(held, [Held::Components([Some(0.1), None, None]), Held::Normal(-0.1)]);
-    assert_eq!(scene.contact.interference, 0.02);
+    assert_eq!(scene.contacts[0].interference, 0.02);
 }
 
 #[test]

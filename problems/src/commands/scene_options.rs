@@ -1,10 +1,10 @@
 //! The options that stand for fields of the scene. Each is declared once, in [`OPTIONS`] or [`OPTIMIZER_OPTIONS`];
 //! parser, help with defaults, messages, and the changes of a scene derive from that.
 
+use crate::commands::list_fields::{first_in_lists, in_lists, stands_for, unfit_subdomains};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use crate::commands::list_fields::{first_in_lists, in_lists, stands_for, unfit_subdomains};
 use contact::error::SceneError;
 use scene_file::{MeasureName, MethodName, SceneFile, Setting, choices};
 

@@ -68,7 +68,11 @@ pub fn sides(scene: &Scene, contact: usize) -> String {
 
 /// What pictures and tables say of a contact: nothing where there is only one.
 pub fn contact_label(scene: &Scene, contact: usize) -> String {
-    if scene.contacts.len() == 1 { String::new() } else { format!("contact {}: {}", contact + 1, sides(scene, contact)) }
+    if scene.contacts.len() == 1 {
+        String::new()
+    } else {
+        format!("contact {}: {}", contact + 1, sides(scene, contact))
+    }
 }
 
 /// The bodies and the contacts of a scene: one line for a scene of the short form, else a line for each of them.
@@ -90,7 +94,8 @@ fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
         facts.push(Fact::new("", &format!("body {}", body.name), format!("{}{shape}", mesh_of(body)), ""));
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
-        let friction = if contact.is_tied() { String::new() } else { format!(", friction {}", exact(contact.friction)) };
+        let friction =
+            if contact.is_tied() { String::new() } else { format!(", friction {}", exact(contact.friction)) };
         let words = sides(scene, index) + &friction;
         facts.push(Fact::new("", &format!("contact {}", index + 1), words, ""));
     }

@@ -4,7 +4,7 @@ use contact::body::Body;
 use contact::body::elasticity::{GaussPoint, Material, hex8};
 use contact::body::mesh::Mesh;
 use contact::error::SceneError;
-use contact::scene::BodyScene;
+use contact::scene::{BodyScene, Geometry, MeshGeometry};
 use problems::commands::Failure;
 use std::sync::Arc;
 
@@ -54,7 +54,9 @@ type Field<'a> = &'a dyn Fn([f64; 3]) -> [f64; 3];
 
 /// A body of bricks of one material without supports and loads.
 pub fn body(mesh: Mesh, material: Material) -> Result<Body, SceneError> {
-    Body::new("block", &BodyScene::new(material, vec![], vec![]), Arc::new(mesh), &[], 1)
+    let mesh = Arc::new(mesh);
+    let geometry = Geometry::Mesh(MeshGeometry { mesh: Arc::clone(&mesh), pieces: Some(1) });
+    Body::new(&BodyScene::new("block", geometry, material), mesh, &[], 1)
 }
 
 /// Number of free dofs and the nodal displacements under a body force, which a rule integrates: the free part of

@@ -1,7 +1,7 @@
 //! `export`: files read back by readers of their own, shapes from runs, and what is refused.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::scene::{Scene, hertz, signorini};
+use contact::scene::{BodyScene, Scene, hertz, signorini};
 use contact::shape::{HeightShape, SplineKind};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -15,7 +15,7 @@ const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
 
 /// Controls that are not flat, inside the admissible set.
 fn uneven(scene: &Scene) -> Vec<f64> {
-    let start = scene.shape.start().into_iter().enumerate();
+    let start = scene.start().into_iter().enumerate();
     start.map(|(index, height)| height * (0.985 + 0.01 * (1.7 * index as f64).sin())).collect()
 }
 
@@ -24,7 +24,7 @@ fn surface_of(scene: &Scene) -> &HeightShape {
 }
 
 fn size(scene: &Scene) -> [f64; 2] {
-    scene.blocks().unwrap().size
+    scene.bodies[0].block().unwrap().size
 }
 
 /// The height of the surface at a place, mm: basis functions by Cox and de Boor's recursion on the knots 0 … 1.
@@ -77,7 +77,7 @@ fn the_files_hold_the_surface_and_the_bodies() {
         assert_eq!(read_rows(&out.join("controls.json")), json!(controls));
         let names: Vec<&str> =
             printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
-        let upper = scene.upper.as_ref().map(|_| "upper_body.stl");
+        let upper = scene.bodies.get(1).map(|_| "upper_body.stl");
         let expected = [
             &["controls.json", "surface.stl", "lower_body.stl"][..],
             upper.as_slice(),
@@ -130,13 +130,13 @@ fn check_triangles(out: &Path, scene: &Scene, controls: &[f64], tolerance: f64) 
     let base = size(scene)[0] * size(scene)[1];
     let mean: f64 = surface_of(scene).surface().unwrap().integrals().iter().zip(controls).map(|(a, b)| a * b).sum();
     assert!((volume(&lower) - base * mean).abs() <= tolerance * base, "{} {}", volume(&lower), base * mean);
-    if let Some(upper) = &scene.upper {
+    if let Some(upper) = scene.bodies.get(1).and_then(BodyScene::block) {
         let body = read("upper_body.stl");
         assert_eq!(edges(&body).1, 0, "the upper body is closed");
         // The mean height of the sphere by the midpoint rule, which errs by less than the tolerance here.
         let places = (0..400 * 400).map(|index| [index / 400, index % 400].map(|i| (f64::from(i) + 0.5) / 400.0));
-        let sum: f64 = places.map(|[s, t]| scene.counter_surface.height(size(scene)[0] * s, size(scene)[1] * t)).sum();
-        let expected = base * (upper.top - sum / 160_000.0);
+        let sum: f64 = places.map(|[s, t]| upper.bottom.height(size(scene)[0] * s, size(scene)[1] * t)).sum();
+        let expected = base * (upper.top.height(0.0, 0.0) - sum / 160_000.0);
         assert!((volume(&body) - expected).abs() <= 1.1 * tolerance * base, "{} {expected}", volume(&body));
     }
 }

@@ -7,6 +7,7 @@
 use contact::communication::InProcess;
 use contact::error::SceneError;
 use contact::memory;
+use contact::scene::BodyScene;
 use contact::solvers::Wanted;
 use nonsmooth::Journal;
 use problems::commands::{Layout, parse_controls};
@@ -160,11 +161,12 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     assert_eq!(SceneFile::parse(&file.print()?, "printed").as_ref().ok(), Some(&file), "the printed file differs");
     let case = Case::new(&file, folder)?;
     case.plans(Wanted::States).try_for_each(|plan| memory::check(&plan, &InProcess))?;
-    let bricks = case.scene.blocks().map_or([0; 3], |blocks| blocks.bricks);
-    if (bricks[0] + 1) * (bricks[1] + 1) <= SMALL && bricks[2] <= 40 && case.scene.control_count() <= SMALL {
+    let bricks = case.scene.bodies.iter().filter_map(BodyScene::block).map(|block| block.bricks);
+    let is_small = |[n1, n2, n3]: [usize; 3]| (n1 + 1) * (n2 + 1) <= SMALL && n3 <= 40;
+    if bricks.into_iter().all(is_small) && case.scene.control_count() <= SMALL {
         let (_, _, problems) = case.cost()?;
         let problem = &problems[0];
-        let start = case.start.unwrap_or_else(|| case.scene.shape.start());
+        let start = case.start.unwrap_or_else(|| case.scene.start());
         problem.admissible.check(&nonsmooth::Vector::from_vec(start.clone()))?;
         // Inverted elements are refused later, with an error of the contact problem.
         let _refused_or_not = problem.positions(&start);

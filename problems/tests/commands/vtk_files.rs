@@ -21,7 +21,7 @@ fn fields(scene: Scene) -> Fields {
     let states = objective.cases().solve(&control, None, Accuracy::TIGHTEST).unwrap();
     let sensitivity = objective.position_sensitivity(&control, &states).unwrap();
     let mut fields = objective.solver().fields(&states[0]).unwrap();
-    fields.contact.set_sensitivity(&sensitivity);
+    fields.contact.set_sensitivity(objective.solver().problem(), &sensitivity);
     fields
 }
 

@@ -27,7 +27,8 @@ class Evaluation:
     """Objective and contact state at a shape.
 
     Arrays over the contact nodes of a block have its columns of nodes along x1 and x2 as their first two axes, with NaN or −1 where
-    supports hold a node; those of a mesh have one axis. Arrays over nodes and cells are those of the body whose shape is optimized.
+    supports hold a node; those of a mesh and of several contacts have one axis. Arrays over nodes and cells are those of the body
+    whose shape is optimized, of several the first one; `bodies` has those of all.
 
     Attributes
     ----------
@@ -37,7 +38,11 @@ class Evaluation:
         One Clarke subgradient with respect to the controls, unit of theta per mm. Where `weakly_active` counts no node,
         it is the gradient.
     contact_nodes : ndarray of int64, one entry per contact node
-        Numbers of the contact nodes, places in `positions`.
+        Numbers of the contact nodes, places in the `positions` of their bodies.
+    contact_bodies : ndarray of int64, one entry per contact node
+        Bodies of the contact nodes, by their places in the scene.
+    contacts : ndarray of int64, one entry per contact node
+        Contacts of the contact nodes, by their places in the scene.
     pressures : ndarray, one entry per contact node
         Contact pressures, MPa.
     gaps : ndarray, one entry per contact node
@@ -58,6 +63,9 @@ class Evaluation:
         Stresses at the centres of the cells, MPa; components 11, 22, 33, 12, 23, 13.
     von_mises : ndarray, (cells,)
         Von Mises stresses there, MPa.
+    bodies : dict of str to dict
+        ``positions``, ``displacements``, ``stresses`` and ``von_mises`` of all bodies by their names: ``"lower"`` and ``"upper"`` of
+        blocks, ``"body"`` of a mesh, or those of a list.
     total_force : float
         Sum of the normal forces, N.
     error_bound : float
@@ -87,6 +95,8 @@ class Evaluation:
     theta: float
     gradient: np.ndarray
     contact_nodes: np.ndarray
+    contact_bodies: np.ndarray
+    contacts: np.ndarray
     pressures: np.ndarray
     gaps: np.ndarray
     status: np.ndarray
@@ -97,6 +107,7 @@ class Evaluation:
     displacements: np.ndarray
     stresses: np.ndarray
     von_mises: np.ndarray
+    bodies: dict
     total_force: float
     error_bound: float
     residual: float

@@ -19,6 +19,8 @@ class Evaluation:
     theta: float
     gradient: NDArray[float64]
     contact_nodes: NDArray[int64]
+    contact_bodies: NDArray[int64]
+    contacts: NDArray[int64]
     pressures: NDArray[float64]
     gaps: NDArray[float64]
     status: NDArray[int8]
@@ -29,6 +31,7 @@ class Evaluation:
     displacements: NDArray[float64]
     stresses: NDArray[float64]
     von_mises: NDArray[float64]
+    bodies: dict[str, dict[str, NDArray[float64]]]
     total_force: float
     error_bound: float
     residual: float

@@ -79,7 +79,8 @@ pub(super) fn equilibrium(
         }
     }
     let (mut unknowns, mut solved) = started.map_or(reached, |found| (found, true));
-    let programs = (!solved && !interrupted())
+    // The programs know half-lines and friction cones alone, no glued nodes.
+    let programs = (!solved && !interrupted() && !contact.problem.boundary.has_ties())
         .then(|| by_cone_programs(contact, tolerance, all_steps.saturating_sub(history.len())));
     if let Some(found) = programs.as_ref().and_then(|programs| programs.unknowns.clone()) {
         (unknowns, solved) = (found, true);

@@ -89,6 +89,10 @@ pub fn resistance(contact: &CompliantContact) -> Option<Resistance> {
 
 /// The refusal that the bound proves, if it does.
 pub(super) fn refusal(contact: &CompliantContact) -> Option<ContactError> {
+    // The bound counts friction cones alone, no glued nodes.
+    if contact.problem.boundary.has_ties() {
+        return None;
+    }
     let found = resistance(contact).filter(|found| found.largest <= MAX_SHARE * found.resultant)?;
     let Resistance { resultant, largest, .. } = found;
     Some(ContactError::FrictionTooWeak { direction: in_words(contact, &found.motion), resultant, largest })

@@ -107,7 +107,11 @@ impl ContactProblem {
         let place = self.bodies[point.body].mesh.nodes()[point.node as usize];
         let value = format!("{} at the contact node at {place:?}, which a support moves", point.friction);
         let allowed = "0 there, or supports with prescribed displacements that do not reach the contact face";
-        Err(SceneError::out_of_range("contact friction", value, allowed))
+        let field = match self.scene.contacts.len() {
+            1 => "contact friction".to_owned(),
+            _ => format!("contact[{}].friction", point.contact),
+        };
+        Err(SceneError::out_of_range(field, value, allowed))
     }
 
     /// Number of entries of the displacements of all bodies: three per node, in the order of the scene.

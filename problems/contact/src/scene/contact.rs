@@ -109,6 +109,11 @@ impl ContactScene {
         self.friction > 0.0 || self.friction_by_region.iter().any(|(_, friction)| *friction > 0.0)
     }
 
+    /// Its faces: the slave face, then the master face where there is one.
+    pub fn faces(&self) -> impl Iterator<Item = &BodyFace> {
+        std::iter::once(&self.slave).chain(self.master_face())
+    }
+
     /// The obstacle, where there is one.
     pub fn obstacle(&self) -> Option<&CounterSurface> {
         match &self.master {

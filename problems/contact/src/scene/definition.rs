@@ -153,6 +153,12 @@ impl Scene {
             SceneError::require(is_new, field, format!("\"{}\"", body.name), "a name that no other body has")?;
         }
         (0..self.contacts.len()).try_for_each(|index| self.validate_contact(index))?;
+        for (index, body) in self.bodies.iter().enumerate() {
+            let mut faces = self.contacts.iter().flat_map(ContactScene::faces);
+            let takes_part = faces.any(|face| face.body == index);
+            let allowed = "bodies that take part in a contact";
+            SceneError::require(takes_part, format!("body[{index}]"), format!("\"{}\"", body.name), allowed)?;
+        }
         (0..self.bodies.len()).try_for_each(|index| self.validate_body(index))
     }
 

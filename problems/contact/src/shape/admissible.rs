@@ -291,7 +291,9 @@ fn below(scene: &Scene, starts: &[usize]) -> Result<Vec<NamedRow>, SceneError> {
             let mut row = vec![(starts[lower] + control, 1.0)];
             row.extend(weights.into_iter().map(|(other, weight)| (starts[upper] + other, -weight)));
             let name = format!("α[{}] less the surface of {} above it", starts[lower] + control, other.name);
-            rows.push((name, row, [f64::NEG_INFINITY, 0.0]));
+            // No shape is farther apart than the faces that keep their shape.
+            let apart = above.top.height(at[0], at[1]) - block.bottom.height(at[0], at[1]);
+            rows.push((name, row, [-apart, 0.0]));
         }
     }
     Ok(rows)

@@ -51,13 +51,18 @@ impl SolverPlan {
         if self.wanted == Wanted::Jacobians { self.scene.control_count() } else { 0 }
     }
 
-    /// Refuses clusters that the subdomains of a problem cannot make, and processes that would own none. Direct
-    /// condensation takes any number of processes.
+    /// Refuses clusters that the subdomains of a problem cannot make, processes that would own none, and glued faces
+    /// with successive approximations. Direct condensation takes any number of processes.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] with what is allowed.
     pub(crate) fn check(&self, problem: &ContactProblem, processes: usize) -> Result<(), SceneError> {
         let subdomains: usize = problem.bodies.iter().map(|body| body.pieces.len()).sum();
+        if self.kind == SolverKind::AugmentedLagrangian && problem.boundary.has_ties() {
+            let allowed = "\"auto\", \"newton\" or \"direct\" with glued faces: the quadratic programs of this method know \
+                           half-lines and discs alone";
+            return Err(SceneError::out_of_range("solver.kind", "augmented-lagrangian", allowed));
+        }
         if let Some(count) = self.clusters {
             let refused = |allowed: String| Err(SceneError::out_of_range("solver.clusters", count, allowed));
             if self.kind == SolverKind::Direct {

@@ -100,10 +100,7 @@ fn measures_without_a_meaning_are_refused() {
             displacement(face("lower", "topp"), None, false),
             ["limits[2].region.face = \"topp\"", "did you mean \"top\""],
         ),
-        (
-            displacement(face("upper", "top"), None, false),
-            ["limits[2].region.body = \"upper\"", "allowed: \"lower\""],
-        ),
+        (displacement(face("upper", "top"), None, false), ["limits[2].region.body = \"upper\"", "allowed: \"lower\""]),
         (displacement(nearby, None, false), ["limits[2].region", "node of the face"]),
         (displacement(low, None, false), ["limits[2].region", "centre of a cell"]),
         (

@@ -18,5 +18,6 @@ mod rate;
 mod reference;
 mod setting;
 mod smoothness;
+mod special;
 mod stack;
 mod taylor;

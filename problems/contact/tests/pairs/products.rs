@@ -27,7 +27,10 @@ fn grids_that_do_not_match_take_a_few_more_products() {
         let matching = products([[25, 5], [25, 5]], friction);
         for other in [[[25, 5], [20, 5]], [[20, 5], [25, 5]], [[25, 5], [15, 5]]] {
             let found = products(other, friction);
-            println!("{other:?} friction {friction}: {found} products, {matching} of matching grids: {:.2}", found as f64 / matching as f64);
+            println!(
+                "{other:?} friction {friction}: {found} products, {matching} of matching grids: {:.2}",
+                found as f64 / matching as f64
+            );
         }
     }
 }

@@ -48,7 +48,8 @@ fn both_solvers_find_the_same_state_in_equilibrium() {
     assert_eq!(first.1.status, second.1.status);
     assert!(first.1.counts().slip > 0 && first.1.counts().stick > 0, "{:?}", first.1.counts());
     for (a, b) in first.0.iter().zip(&second.0) {
-        let off = a.displacement.iter().zip(&b.displacement).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
+        let off =
+            a.displacement.iter().zip(&b.displacement).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
         let off = off.fold(0.0, f64::max);
         assert!(off < 1e-9, "{off:e}");
     }

@@ -43,7 +43,8 @@ const UNITS: [&str; 2] = [
 /// What the numbers of the lists are, with the names of the bodies.
 fn units(scene: &Scene) -> String {
     let names = scene.bodies.iter().enumerate().map(|(number, body)| format!("{number} {}", body.name));
-    let names = if scene_words::is_short(scene) { "0 lower, 1 upper".into() } else { names.collect::<Vec<_>>().join(", ") };
+    let names =
+        if scene_words::is_short(scene) { "0 lower, 1 upper".into() } else { names.collect::<Vec<_>>().join(", ") };
     let [before, after] = UNITS;
     format!("{before}{names}{after}")
 }

@@ -39,8 +39,7 @@ pub fn triangles(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Outpu
 /// [`Failure`] for positions that are no numbers.
 pub fn skin(problem: &ContactProblem, body: usize, positions: &Positions) -> Result<OutputFile, Failure> {
     let Body { mesh, name, .. } = &problem.bodies[body];
-    let triangles: Vec<Triangle> =
-        mesh.skin().iter().flat_map(|face| divided(mesh, *face, &positions[body])).collect();
+    let triangles: Vec<Triangle> = mesh.skin().iter().flat_map(|face| divided(mesh, *face, &positions[body])).collect();
     let what = format!("the {}, closed", scene_words::body(name));
     written(body_file(&problem.scene, body, "stl"), &what, &triangles)
 }
@@ -88,7 +87,8 @@ fn gmsh_mesh(mesh: &Mesh, nodes: &[[f64; 3]]) -> GmshMesh {
         .zip(mesh.cells())
         .map(|(tag, cell)| GmshCell { kind: kind(cell.kind), nodes: wide(cell.nodes), tag })
         .collect();
-    let mut this = GmshMesh { node_tags: (1..=nodes.len() as u64).collect(), nodes: nodes.to_vec(), cells, ..GmshMesh::default() };
+    let mut this =
+        GmshMesh { node_tags: (1..=nodes.len() as u64).collect(), nodes: nodes.to_vec(), cells, ..GmshMesh::default() };
     for (name, faces) in mesh.faces() {
         let first = this.facets.len();
         for &face in faces {
@@ -119,7 +119,11 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
         let node = point.node as usize;
         let (start, here) = (start[point.body][node], positions[point.body][node]);
         let numbers: Vec<String> = start.into_iter().chain(here).map(exact).collect();
-        let lead = if several { format!("{},{},", point.contact + 1, stem(&problem.scene, point.body)) } else { String::new() };
+        let lead = if several {
+            format!("{},{},", point.contact + 1, stem(&problem.scene, point.body))
+        } else {
+            String::new()
+        };
         table += &format!("{lead}{node},{}\n", numbers.join(","));
     }
     let count = points.len();

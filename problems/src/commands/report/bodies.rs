@@ -59,7 +59,8 @@ fn stresses(
         [_] => vec![[0.0; 3]; problem.bodies.len()],
         _ => apart(&problem.scene, &surfaces, towards),
     };
-    let moved = seen().flat_map(|(_, fields)| fields.bodies.iter().zip(&places)).filter(|(_, place)| **place != [0.0; 3]);
+    let moved =
+        seen().flat_map(|(_, fields)| fields.bodies.iter().zip(&places)).filter(|(_, place)| **place != [0.0; 3]);
     let height = moved.map(|(body, _)| side(body, 2)).fold(0.0, f64::max);
     let lift = if height > 0.0 { nice_below(MAX_LIFT * height) } else { 0.0 };
     let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
@@ -90,11 +91,7 @@ fn stresses(
 
 /// By how much bodies are moved so that contact surfaces are seen: the master of a contact from its slave by a vector
 /// of the slave face. Bodies that are glued stay together.
-pub fn apart(
-    scene: &Scene,
-    surfaces: &[ContactSurface],
-    by: impl Fn(&ContactSurface) -> [f64; 3],
-) -> Vec<[f64; 3]> {
+pub fn apart(scene: &Scene, surfaces: &[ContactSurface], by: impl Fn(&ContactSurface) -> [f64; 3]) -> Vec<[f64; 3]> {
     let towards = |contact: usize| {
         surfaces.iter().find(|surface| surface.contact == contact).map_or([0.0; 3], |surface| by(surface))
     };

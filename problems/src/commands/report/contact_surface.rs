@@ -47,7 +47,9 @@ impl ContactSurface {
         let contacts = &problem.scene.contacts;
         let free = |body: usize| {
             let sides = contacts.iter().filter(|contact| !contact.is_tied());
-            sides.flat_map(|contact| std::iter::once(&contact.slave).chain(contact.master_face())).any(|own| own.body == body)
+            sides
+                .flat_map(|contact| std::iter::once(&contact.slave).chain(contact.master_face()))
+                .any(|own| own.body == body)
         };
         let mut found: Vec<Self> = Vec::new();
         for (index, contact) in contacts.iter().enumerate() {
@@ -119,10 +121,7 @@ impl ContactSurface {
 
     /// Values at the nodes from those at the contact nodes, `rest` at the others.
     pub fn spread<T: Clone>(&self, values: &[T], rest: T) -> Vec<T> {
-        self.points
-            .iter()
-            .map(|point| point.map_or_else(|| rest.clone(), |point| values[point].clone()))
-            .collect()
+        self.points.iter().map(|point| point.map_or_else(|| rest.clone(), |point| values[point].clone())).collect()
     }
 
     /// Names of the axes of the plan.
@@ -194,8 +193,7 @@ fn plan_of(places: &[[f64; 3]], faces: &[Vec<usize>]) -> ([usize; 2], [f64; 3]) 
     for facet in faces {
         for (index, &from) in facet.iter().enumerate() {
             let (a, b) = (places[from], places[facet[(index + 1) % facet.len()]]);
-            (0..3)
-                .for_each(|i| normal[i] += 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]));
+            (0..3).for_each(|i| normal[i] += 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]));
         }
     }
     let across = (0..3).fold(2, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });

@@ -121,7 +121,8 @@ impl<'a> ReportFolder<'a> {
         };
         let mut figures = Vec::new();
         let cuts = "contact pressure along lines through the peaks";
-        figures.extend(surfaces.iter().map(|surface| (gallery::cuts(objective, surface, shapes), cuts, captions::CUTS)));
+        figures
+            .extend(surfaces.iter().map(|surface| (gallery::cuts(objective, surface, shapes), cuts, captions::CUTS)));
         figures.extend(surfaces.iter().map(|surface| (gallery::status(objective, surface, shapes), what, status)));
         let stress = "von Mises stress on the deformed bodies";
         figures
@@ -139,9 +140,7 @@ impl<'a> ReportFolder<'a> {
 
     /// The contact pressures of some shapes on a surface.
     fn draw_pressure(&mut self, surface: &ContactSurface, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
-        let figure = |scales| {
-            gallery::pressure(self.objective, surface, shapes, scales).map_err(Failure::computation)
-        };
+        let figure = |scales| gallery::pressure(self.objective, surface, shapes, scales).map_err(Failure::computation);
         let common = figure(ColourScales::Common)?;
         if shapes.len() == 1 {
             return self.draw(common, "contact pressure", captions::PRESSURE_ALONE);

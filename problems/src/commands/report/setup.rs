@@ -96,7 +96,11 @@ fn frictions(scene: &Scene, index: usize) -> Vec<String> {
     let label = scene_words::contact_label(scene, index);
     let lead = if label.is_empty() { label } else { format!("{label}: ") };
     if contact.is_tied() {
-        return vec![if lead.is_empty() { scene_words::sides(scene, index) } else { lead.trim_end_matches(": ").into() }];
+        return vec![if lead.is_empty() {
+            scene_words::sides(scene, index)
+        } else {
+            lead.trim_end_matches(": ").into()
+        }];
     }
     let own = match contact.friction > 0.0 {
         true => format!("{lead}friction coefficient {}", number(contact.friction)),

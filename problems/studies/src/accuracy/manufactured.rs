@@ -110,7 +110,7 @@ struct Smooth {
 }
 
 fn smooth(bricks: usize, material: Material) -> Result<Smooth, Failure> {
-    let grid = Grid { cells: [bricks; 3], size: [1.0, 1.0] };
+    let grid = Grid { cells: [bricks; 3], corner: [0.0; 2], size: [1.0, 1.0] };
     let upper: Vec<f64> = grid.places().map(|[x1, x2]| 1.0 + 0.15 * (2.0 * x1).sin() * (3.0 * x2).cos()).collect();
     let body = held_block::body(block(&grid, [1; 3], &vec![0.0; grid.column_count()], &upper)?, material)?;
     let wave = Wave::new(&material);

@@ -35,7 +35,7 @@ const CHANGE: f64 = 1e-3;
 pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<ScalingRow, Failure> {
     memory::reset_peak();
     let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
-    let controls = problem.scene.shape.start();
+    let controls = problem.scene.start();
     let change = seeded_direction(controls.len(), SEED);
     let nearby: Vec<f64> =
         controls.iter().zip(&change).map(|(height, entry)| height + CHANGE * height * entry).collect();

@@ -36,7 +36,7 @@ fn record(case: &ContactCase) -> Record {
         Ok(problem) => problem,
         Err(reason) => return refused_scene(record, case, reason),
     };
-    let start = problem.scene.shape.start();
+    let start = problem.scene.start();
     let controls = case.controls.as_ref().unwrap_or(&start);
     let (torn_path, torn) = by_tfeti(&problem, controls);
     let (direct_path, direct) = by_condensation(&problem, controls);
@@ -189,8 +189,9 @@ fn solved(
     let (first, second) = (first?, second?);
     if torn.forces.kink.weakly_active == 0 && direct.forces.kink.weakly_active == 0 {
         // Where equilibrium alone determines the forces, sensitivities vanish up to rounding of a brick's stiffness.
-        let brick = problem.scene.blocks().map_or(0.0, |blocks| blocks.size[0] / blocks.bricks[0] as f64);
-        let floor = NEGLIGIBLE * problem.scene.lower.material.young_modulus() * brick;
+        let body = &problem.scene.bodies[0];
+        let brick = body.block().map_or(0.0, |block| block.size[0] / block.bricks[0] as f64);
+        let floor = NEGLIGIBLE * body.material.young_modulus() * brick;
         let difference = difference_over(first, second, floor);
         record.subgradient_difference = Some(difference);
         if difference.is_nan() || difference > SUBGRADIENT_AGREEMENT {

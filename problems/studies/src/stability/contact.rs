@@ -95,7 +95,7 @@ impl ContactCase {
 
 /// Control heights of a gently wavy surface below the start height of a scene.
 pub fn wavy_controls(scene: &Scene) -> Vec<f64> {
-    let start = scene.shape.start();
+    let start = scene.start();
     wavy(start[0], start.len())
 }
 

@@ -3,7 +3,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
-use crate::stability::scenes::{HELD, block, footed, pair, stacked, with_loads};
+use crate::stability::scenes::{HELD, below, block, footed, pair, stacked, with_loads};
 use contact::body::mesh::BlockFace;
 use contact::equilibrium::{ContactForces, ContactProblem, WEAKLY_ACTIVE};
 use contact::error::SceneError;
@@ -46,25 +46,20 @@ pub fn cases() -> Vec<Case> {
 
 /// A quarter of a ball of some radius, pressed by some pressure on its top.
 fn ball(radius: f64, pressure: f64) -> Result<Scene, SceneError> {
-    let mut scene = pair()?;
-    scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius, centre: [0.0; 2] };
-    scene.contact.friction = 0.3;
-    if let Some(upper) = &mut scene.upper {
-        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -pressure])];
-    }
-    Ok(scene)
+    let mut scene = below(pair()?, CounterSurface::Sphere { apex: 10.0, radius, centre: [0.0; 2] });
+    scene.bodies[1].loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -pressure])];
+    Ok(scene.with_friction(0.3))
 }
 
 /// The lower block is drawn along x₁ below a plate that presses on it: every node slides.
 fn dragged(friction: f64) -> Result<Scene, SceneError> {
     let mut scene = stacked(friction, 1.0, 0.0)?;
-    scene.lower.supports = vec![Support::new(BlockFace::Bottom, HELD)];
-    if let Some(upper) = &mut scene.upper {
-        upper.body.supports = vec![Support::new(BlockFace::X1Max, [true, true, false])];
-        upper.body.loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
-    }
+    let [lower, upper] = [0, 1];
+    scene.bodies[lower].supports = vec![Support::new(BlockFace::Bottom, HELD)];
+    scene.bodies[upper].supports = vec![Support::new(BlockFace::X1Max, [true, true, false])];
+    scene.bodies[upper].loads = vec![Load::traction(BlockFace::Top, [0.0, 0.0, -1.0])];
     let faces = [BlockFace::X1Min, BlockFace::X2Min, BlockFace::X2Max];
-    scene.lower.loads = faces.map(|face| Load::traction(face, [0.02, 0.0, 0.0])).to_vec();
+    scene.bodies[lower].loads = faces.map(|face| Load::traction(face, [0.02, 0.0, 0.0])).to_vec();
     Ok(scene)
 }
 
@@ -96,13 +91,12 @@ fn onset_of_sliding() -> Vec<Case> {
 /// Gaps from half of the height inside the obstacle to 1e12 mm away from it.
 fn penetrations_and_distances() -> Vec<Case> {
     let plane = |(label, depth): (&str, f64)| {
-        let scene = stacked(0.3, 1.0, 0.0)
-            .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 10.0 - depth }, ..scene });
+        let scene = stacked(0.3, 1.0, 0.0).map(|scene| below(scene, CounterSurface::Plane { height: 10.0 - depth }));
         ContactCase::new(scene).check(uniform(1.0, 0.0)).case(GROUP, format!("initial penetration {label}"))
     };
     let wavy = |base: f64| {
-        let counter_surface = CounterSurface::Waves { base, first: 1.0, second: 2.0, period: 100.0, origin: [0.0; 2] };
-        ContactCase::new(block().map(|scene| Scene { counter_surface, ..scene }))
+        let surface = CounterSurface::Waves { base, first: 1.0, second: 2.0, period: 100.0, origin: [0.0; 2] };
+        ContactCase::new(block().map(|scene| below(scene, surface)))
     };
     let mut cases: Vec<Case> = [("1 µm", 1e-3), ("1 mm", 1.0), ("half of the height", 5.0)].map(plane).into();
     cases.push(wavy(95.0).case(GROUP, "initial penetration of a wavy obstacle"));

@@ -19,7 +19,7 @@ pub fn cases() -> Vec<Case> {
     }
     for friction in [0.3, 0.9, 1.5, 2.0, 3.0, 5.0] {
         let scene = footed(0.0).map(|mut scene| {
-            scene.lower.loads = vec![
+            scene.bodies[0].loads = vec![
                 Load::traction(BlockFace::X1Max, [40.0, 7.0, 20.0]),
                 Load::traction(BlockFace::X1Min, [40.0, 0.0, 20.0]),
             ];

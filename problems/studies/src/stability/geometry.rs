@@ -3,8 +3,8 @@
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::contacts::uniform;
-use crate::stability::scenes::{block, stacked};
-use contact::scene::CounterSurface;
+use crate::stability::scenes::{below, block, stacked};
+use contact::scene::{CounterSurface, Geometry};
 
 const GROUP: &str = "geometry";
 const FACTORS: &str =
@@ -15,11 +15,10 @@ pub fn cases() -> Vec<Case> {
     for height in [1e-2, 0.1, 1.0, 100.0, 1e3, 1e4] {
         let scene = stacked(0.3, 1.0, 0.05).map(|scene| {
             let mut scene = scene.with_heights(|heights| heights.start_height = height);
-            scene.counter_surface = CounterSurface::Plane { height };
-            if let Some(upper) = &mut scene.upper {
-                upper.top = 2.0 * height;
+            if let Geometry::Block(block) = &mut scene.bodies[1].geometry {
+                block.top = CounterSurface::Plane { height: 2.0 * height };
             }
-            scene
+            below(scene, CounterSurface::Plane { height })
         });
         let mut case = ContactCase::new(scene).check(uniform(1.0, 0.05));
         if !(0.1..1e4).contains(&height) {
@@ -48,10 +47,8 @@ pub fn cases() -> Vec<Case> {
         controls[35] = height;
         cases.push(ContactCase::new(block()).at(controls).refused("InvertedElement").case(GROUP, label));
     }
-    let scene = block().map(|mut scene| {
-        scene.counter_surface = CounterSurface::Sphere { apex: 100.0, radius: 50.0, centre: [0.0; 2] };
-        scene
-    });
+    let sphere = CounterSurface::Sphere { apex: 100.0, radius: 50.0, centre: [0.0; 2] };
+    let scene = block().map(|scene| below(scene, sphere));
     cases.push(ContactCase::new(scene).refused("Scene").case(GROUP, "counter surface that ends above the base"));
     cases
 }

@@ -2,7 +2,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
-use crate::stability::scenes::{block, footed, pair, stacked, with_loads};
+use crate::stability::scenes::{below, block, footed, pair, stacked, with_loads};
 use contact::body::mesh::BlockFace;
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Load, Scene, Support};
@@ -41,27 +41,24 @@ fn sizes() -> Vec<Case> {
 /// The block without supports, under a traction on its base.
 fn unsupported(friction: f64, traction: [f64; 3]) -> Result<Scene, SceneError> {
     let mut scene = block()?;
-    scene.lower.supports.clear();
-    scene.lower.loads = vec![Load::traction(BlockFace::Bottom, traction)];
+    scene.bodies[0].supports.clear();
+    scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, traction)];
     Ok(scene.with_friction(friction))
 }
 
 /// Bodies whose rigid motions only contact and friction hold, or fail to hold.
 fn held_by_contact() -> Vec<Case> {
     let pressed = [0.0, 0.0, 3000.0];
-    let flat = unsupported(0.0, pressed)
-        .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 101.0 }, ..scene });
+    let flat = unsupported(0.0, pressed).map(|scene| below(scene, CounterSurface::Plane { height: 101.0 }));
     // Held along x₁ and x₂ at the base only: rotations about x₁ and x₂, and x₃, are held by contact.
     let rotation = block().map(|mut scene| {
-        scene.lower.supports = vec![Support::new(BlockFace::Bottom, [true, true, false])];
-        scene.lower.loads =
+        scene.bodies[0].supports = vec![Support::new(BlockFace::Bottom, [true, true, false])];
+        scene.bodies[0].loads =
             vec![Load::traction(BlockFace::Bottom, pressed), Load::traction(BlockFace::X1Max, [0.0, 0.0, 500.0])];
         scene
     });
     let moment = stacked(0.3, 1.0, 0.0).map(|mut scene| {
-        if let Some(upper) = &mut scene.upper {
-            upper.body.loads.push(Load::traction(BlockFace::X1Max, [0.0, 0.0, 2.0]));
-        }
+        scene.bodies[1].loads.push(Load::traction(BlockFace::X1Max, [0.0, 0.0, 2.0]));
         scene
     });
     let solved = |scene, name: &str| ContactCase::new(scene).case(SUPPORTS, name);

@@ -36,7 +36,7 @@ fn field([x, y, z]: [f64; 3]) -> ([f64; 3], [f64; 3]) {
 /// [`Failure`] for a bad Poisson ratio or a matrix that cannot be factored.
 pub fn field_error(cells: usize, poisson_ratio: f64, formulation: Formulation) -> Result<f64, Failure> {
     let material = Material::new(1.0, poisson_ratio)?.with_formulation(formulation);
-    let grid = Grid { cells: [cells; 3], size: [1.0; 2] };
+    let grid = Grid { cells: [cells; 3], corner: [0.0; 2], size: [1.0; 2] };
     let columns = grid.column_count();
     let body = body(block(&grid, [1; 3], &vec![0.0; columns], &vec![1.0; columns])?, material)?;
     let force = |x| field(x).1.map(|f| material.shear_modulus() * f);

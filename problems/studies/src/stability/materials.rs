@@ -21,7 +21,7 @@ pub fn cases() -> Vec<Case> {
                 [("block", block(), vec![(1.1e5, ratio)]), ("two bodies", pair(), vec![(7.0e4, ratio), (2.1e5, ratio)])]
             {
                 let scene = with_materials(scene, &materials).map(|mut scene| {
-                    for body in scene.bodies_mut() {
+                    for body in &mut scene.bodies {
                         body.material = body.material.with_formulation(formulation);
                     }
                     scene

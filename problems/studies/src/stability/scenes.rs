@@ -4,9 +4,9 @@ use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::error::SceneError;
 use contact::scene::{
-    Blocks, BodyScene, ContactScene, CounterSurface, Geometry, Load, Scene, Support, UpperBody, hertz, signorini,
+    Block, BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, Master, Scene, Support, hertz, signorini,
 };
-use contact::shape::{HeightShape, ShapeBounds, ShapeScene, SplineKind};
+use contact::shape::{HeightShape, ShapeBounds, ShapeScene, ShapedFace, SplineKind};
 
 pub const HELD: [bool; 3] = [true; 3];
 
@@ -31,44 +31,57 @@ pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneE
     };
     let mut upper_loads = sides();
     upper_loads.push(Load::traction(BlockFace::Top, [shear, 0.0, -pressure]));
-    Ok(Scene {
-        name: "stacked".into(),
-        geometry: Geometry::Blocks(Blocks { size: [10.0, 10.0], bricks: [4; 3], subdomains: [2; 3] }),
-        lower: BodyScene::new(material, vec![Support::new(BlockFace::Bottom, HELD)], sides()),
-        upper: Some(UpperBody { body: BodyScene::new(material, vec![], upper_loads), top: 20.0 }),
-        counter_surface: CounterSurface::Plane { height: 10.0 },
-        contact: ContactScene::along_x3(BlockFace::Top, friction),
-        shape: ShapeScene::Heights(HeightShape {
-            spline: SplineKind::BSpline(1),
-            control_points: [2, 2],
-            bounds: ShapeBounds { minimum_height: 1e-9, slope: 1e6, volume: [1e-9, 1e12] },
-            start_height: 10.0,
-            fairness: 0.0,
-        }),
-    })
+    let shape = ShapeScene::Heights(HeightShape {
+        face: ShapedFace::Top,
+        spline: SplineKind::BSpline(1),
+        control_points: [2, 2],
+        bounds: ShapeBounds { minimum_height: 1e-9, slope: 1e6, volume: [1e-9, 1e12] },
+        start_height: 10.0,
+        fairness: 0.0,
+    });
+    let below = Block::new([10.0, 10.0], 10.0, [4; 3], [2; 3]);
+    let [bottom, top] = [10.0, 20.0].map(|height| CounterSurface::Plane { height });
+    let above = Block { bottom, top, ..below.clone() };
+    let lower = BodyScene {
+        supports: vec![Support::new(BlockFace::Bottom, HELD)],
+        loads: sides(),
+        shape: Some(shape),
+        ..BodyScene::new("lower", Geometry::Block(below), material)
+    };
+    let upper = BodyScene { loads: upper_loads, ..BodyScene::new("upper", Geometry::Block(above), material) };
+    let master = Master::Body(BodyFace::new(1, BlockFace::Bottom));
+    let contact = ContactScene::along_x3(BodyFace::new(0, BlockFace::Top), master, friction);
+    Ok(Scene { name: "stacked".into(), bodies: vec![lower, upper], contacts: vec![contact] })
+}
+
+/// A scene with another surface above its lower block: the obstacle, or the bottom of the upper block.
+pub fn below(mut scene: Scene, surface: CounterSurface) -> Scene {
+    if let Some(Master::Obstacle(obstacle)) = scene.contacts.first_mut().map(|contact| &mut contact.master) {
+        *obstacle = surface;
+    } else if let Some(Geometry::Block(block)) = scene.bodies.get_mut(1).map(|body| &mut body.geometry) {
+        block.bottom = surface;
+    }
+    scene
 }
 
 /// A block of 10 × 10 × 10 mm on a held base, sheared by a traction along x₁ on its sides and pressed from its sides,
 /// below a rigid plane at a distance `gap`.
 pub fn footed(gap: f64) -> Result<Scene, SceneError> {
-    let stacked = stacked(0.3, 1.0, 0.0)?;
-    let mut lower = stacked.lower;
+    let mut scene = stacked(0.3, 1.0, 0.0)?;
+    scene.name = "footed".into();
+    scene.bodies.truncate(1);
+    scene.contacts[0].master = Master::Obstacle(CounterSurface::Plane { height: 10.0 + gap });
+    let lower = &mut scene.bodies[0];
     lower.material = Material::new(1000.0, 0.3)?;
     lower.loads =
         vec![Load::traction(BlockFace::X1Max, [-20.0, 0.0, 5.0]), Load::traction(BlockFace::X1Min, [20.0, 0.0, 5.0])];
-    Ok(Scene {
-        name: "footed".into(),
-        lower,
-        upper: None,
-        counter_surface: CounterSurface::Plane { height: 10.0 + gap },
-        ..stacked
-    })
+    Ok(scene)
 }
 
 /// A scene with other materials: (E, ν) of the lower and the upper body.
 pub fn with_materials(scene: Result<Scene, SceneError>, materials: &[(f64, f64)]) -> Result<Scene, SceneError> {
     let mut scene = scene?;
-    for (body, (young, poisson)) in scene.bodies_mut().zip(materials) {
+    for (body, (young, poisson)) in scene.bodies.iter_mut().zip(materials) {
         let formulation = body.material.formulation();
         body.material = Material::new(*young, *poisson)?.with_formulation(formulation);
     }
@@ -78,7 +91,7 @@ pub fn with_materials(scene: Result<Scene, SceneError>, materials: &[(f64, f64)]
 /// A scene with all tractions times a factor.
 pub fn with_loads(scene: Result<Scene, SceneError>, factor: f64) -> Result<Scene, SceneError> {
     let mut scene = scene?;
-    for load in scene.bodies_mut().flat_map(|body| &mut body.loads) {
+    for load in scene.bodies.iter_mut().flat_map(|body| &mut body.loads) {
         *load = load.scaled(factor);
     }
     Ok(scene)

@@ -29,7 +29,7 @@ pub fn cases() -> Vec<Case> {
     cases.push(ContactCase::new(single).case(GROUP, "one brick in all"));
     // Edges and corners held by several faces at once: every dof has one row per copy, whatever the number of supports.
     let redundant = block().map(|mut scene| {
-        scene.lower.supports = vec![
+        scene.bodies[0].supports = vec![
             Support::new(BlockFace::X1Min, [true, true, false]),
             Support::new(BlockFace::X2Min, [true, true, false]),
             Support::new(BlockFace::X1Max, [true, true, false]),

@@ -12,7 +12,7 @@ use crate::stability::scenes::{block, footed, pair, stacked, with_loads};
 use contact::body::elasticity::Material;
 use contact::equilibrium::{ContactForces, ContactProblem};
 use contact::error::SceneError;
-use contact::scene::{CounterSurface, Scene};
+use contact::scene::{CounterSurface, Master, Scene};
 use std::sync::Arc;
 
 const GROUP: &str = "units";
@@ -21,16 +21,34 @@ const EQUAL: f64 = 1e-10;
 
 /// A scene with its unit of length changed: lengths × s at equal forces.
 fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
-    let scene = scene.clone().with_blocks(|blocks| blocks.size = blocks.size.map(|length| s * length));
+    let scene = scene.clone().with_blocks(|block| {
+        block.size = block.size.map(|length| s * length);
+        (block.bottom, block.top) = (surface(&block.bottom, s), surface(&block.top, s));
+    });
     let mut scene = scene.with_heights(|heights| {
         heights.start_height *= s;
         heights.bounds.minimum_height *= s;
         heights.bounds.volume = heights.bounds.volume.map(|volume| s.powi(3) * volume);
     });
-    if let Some(upper) = &mut scene.upper {
-        upper.top *= s;
+    for contact in &mut scene.contacts {
+        if let Master::Obstacle(obstacle) = &mut contact.master {
+            *obstacle = surface(obstacle, s);
+        }
     }
-    scene.counter_surface = match scene.counter_surface {
+    for body in &mut scene.bodies {
+        let material = body.material;
+        body.material = Material::new(material.young_modulus() / (s * s), material.poisson_ratio())?
+            .with_formulation(material.formulation());
+        for load in &mut body.loads {
+            *load = load.scaled(1.0 / (s * s));
+        }
+    }
+    Ok(scene)
+}
+
+/// A surface with lengths × s.
+fn surface(surface: &CounterSurface, s: f64) -> CounterSurface {
+    match surface.clone() {
         CounterSurface::Waves { base, first, second, period, origin } => {
             let origin = origin.map(|x| s * x);
             CounterSurface::Waves { base: s * base, first: s * first, second: s * second, period: s * period, origin }
@@ -45,27 +63,18 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
         CounterSurface::Plane { height } => CounterSurface::Plane { height: s * height },
         CounterSurface::Grid(grid) => CounterSurface::Grid(grid.scaled(s)),
         other => other,
-    };
-    for body in scene.bodies_mut() {
-        let material = body.material;
-        body.material = Material::new(material.young_modulus() / (s * s), material.poisson_ratio())?
-            .with_formulation(material.formulation());
-        for load in &mut body.loads {
-            *load = load.scaled(1.0 / (s * s));
-        }
     }
-    Ok(scene)
 }
 
 /// Control heights of a scene.
 type Heights = fn(&Scene) -> Vec<f64>;
 
 fn flat_controls(scene: &Scene) -> Vec<f64> {
-    scene.shape.start()
+    scene.start()
 }
 
 fn solve(scene: Scene, heights: Heights, direct: bool) -> Result<(Attempt, f64), SceneError> {
-    let (controls, length) = (heights(&scene), scene.shape.start()[0]);
+    let (controls, length) = (heights(&scene), scene.start()[0]);
     let problem = Arc::new(ContactProblem::new(scene)?);
     let attempt = if direct { by_condensation(&problem, &controls) } else { by_tfeti(&problem, &controls) };
     Ok((attempt, length))
@@ -78,8 +87,9 @@ fn openings(forces: &ContactForces, length: f64) -> Vec<f64> {
 
 /// Strain that the normal forces stand for: openings of closed nodes are zero compared with it.
 fn strain(scene: &Scene, forces: &ContactForces) -> f64 {
-    let area = scene.blocks().map_or(1.0, |blocks| blocks.size[0] * blocks.size[1]);
-    forces.total_normal_force() / (scene.lower.material.young_modulus() * area)
+    let body = &scene.bodies[0];
+    let area = body.block().map_or(1.0, |block| block.size[0] * block.size[1]);
+    forces.total_normal_force() / (body.material.young_modulus() * area)
 }
 
 fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Result<(CaseOutcome, String), SceneError> {

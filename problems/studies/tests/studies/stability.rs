@@ -6,7 +6,7 @@ use contact::direct::DirectSolver;
 use contact::equilibrium::{Configuration, ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
-use contact::scene::{CounterSurface, Held, Scene, hertz, signorini};
+use contact::scene::{CounterSurface, Held, Master, Scene, hertz, signorini};
 use contact::tfeti::{AugmentedLagrangianSettings, TornOptions, TotalFeti, solve_by_successive_approximations};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
@@ -67,10 +67,11 @@ fn mean_dilatation_keeps_the_rate_that_standard_bricks_lose() {
 fn patch_test_with_mean_dilatation() {
     for ratio in [0.0, 0.33, 0.499] {
         let mut scene = signorini().unwrap().with_bricks([6; 3], [3; 3]).with_friction(0.0);
-        scene.counter_surface = CounterSurface::Plane { height: 100.0 };
-        scene.lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
+        scene.contacts[0].master = Master::Obstacle(CounterSurface::Plane { height: 100.0 });
+        let lower = &mut scene.bodies[0];
+        lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
         // Free to widen: supports hold only what friction would not.
-        scene.lower.supports[0].held = Held::Components([Some(0.0), None, None]);
+        lower.supports[0].held = Held::Components([Some(0.0), None, None]);
         let problem = Arc::new(ContactProblem::new(scene).unwrap());
         let forces = newton(&problem).solve(&[100.0; 36], None, 0.0).unwrap().forces;
         for pressure in problem.start_rows().pressures(&forces.normal) {
@@ -84,7 +85,7 @@ fn patch_test_with_mean_dilatation() {
 fn contraction_of_both_paths_agrees() {
     for (scene, friction) in [(signorini().unwrap(), 0.9), (hertz().unwrap(), 0.3)] {
         let problem = Arc::new(ContactProblem::new(scene.with_bricks([4; 3], [2; 3]).with_friction(friction)).unwrap());
-        let controls: Vec<f64> = problem.scene.shape.start().iter().map(|height| 0.99 * height).collect();
+        let controls: Vec<f64> = problem.scene.start().iter().map(|height| 0.99 * height).collect();
         let torn = newton(&problem);
         let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
         let state = torn.solve(&controls, None, 1e-11).unwrap();
@@ -127,13 +128,13 @@ fn random_scene(seed: u64, cells: usize, torn: bool, friction: f64, two: bool) -
         index += 1;
         number(seed, index)
     };
-    for body in scene.bodies_mut() {
+    for body in &mut scene.bodies {
         let formulation = if draw() > 0.0 { Formulation::Standard } else { Formulation::MeanDilatation };
         let young = 1e5 * 10.0_f64.powf(4.0 * draw());
         body.material = Material::new(young, 0.2 + 0.28 * draw()).unwrap().with_formulation(formulation);
     }
     let factor = 10.0_f64.powf(4.0 * draw());
-    for load in scene.bodies_mut().flat_map(|body| &mut body.loads) {
+    for load in scene.bodies.iter_mut().flat_map(|body| &mut body.loads) {
         *load = load.scaled(factor);
     }
     scene
@@ -146,7 +147,7 @@ fn certified(problem: &ContactProblem, controls: &[f64], forces: &ContactForces)
         assert!(normal >= 0.0 && normal.is_finite());
         if let Some(traction) = forces.tangential.get(index) {
             assert!(
-                norm(traction) <= problem.scene.contact.friction * normal * (1.0 + 1e-7) + 1e-300,
+                norm(traction) <= problem.scene.friction() * normal * (1.0 + 1e-7) + 1e-300,
                 "{} {normal}",
                 norm(traction)
             );
@@ -154,7 +155,7 @@ fn certified(problem: &ContactProblem, controls: &[f64], forces: &ContactForces)
     }
     // Vertical equilibrium of the body that nothing but contact holds along x₃.
     let rigid = Configuration::new(problem, controls).unwrap().rigid;
-    let body = if problem.scene.upper.is_some() { 1 } else { 0 };
+    let body = problem.scene.bodies.len() - 1;
     let pressed: f64 = rigid.loads.iter().filter(|load| load.0 == body).map(|load| load.2[2]).sum();
     let carried = forces.total_normal_force();
     assert!((pressed.abs() - carried).abs() < 1e-7 * rigid.total_load(), "{pressed} {carried}");
@@ -175,7 +176,7 @@ fn random_scenes_are_certified_or_refused_with_a_cause() {
         |(seed, cells, torn, friction, two)| {
             let scene = random_scene(seed, cells, torn, friction, two);
             let controls: Vec<f64> =
-                (0..36).map(|index| scene.shape.start()[0] * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
+                (0..36).map(|index| scene.start()[0] * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
             let torn = newton(&problem);
             let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();

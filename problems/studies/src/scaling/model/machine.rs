@@ -58,7 +58,7 @@ impl Machine {
         let (small, large) = (small?, large?);
         let case = CASES[1];
         let estimate = WorkEstimate::of(&scene.scene(case)?);
-        let bodies = if scene.scene(case)?.upper.is_some() { 2.0 } else { 1.0 };
+        let bodies = scene.scene(case)?.bodies.len() as f64;
         let count = |case: Case| bodies * (case.subdomains as f64).powi(3);
         let pieces = count(case);
         let stages = large.cold.state.stages.unwrap_or_default();

@@ -138,7 +138,7 @@ fn examine(seed: u64, index: usize) -> Examination {
         Err(error) => (false, Err(format!("no scene: {error}"))),
         Ok(case) => {
             let outcome = catch_unwind(AssertUnwindSafe(|| paths_of(&case, index)));
-            (!case.scene.contact.has_friction(), outcome.unwrap_or_else(|_| Err("panic".into())))
+            (!case.scene.has_friction(), outcome.unwrap_or_else(|_| Err("panic".into())))
         }
     };
     Examination { family, frictionless, outcome, text }
