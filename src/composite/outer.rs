@@ -33,9 +33,9 @@ pub trait OuterFunction {
         vec![]
     }
 
-    /// Σ λ_k Gᵀ∇²h_k G, n × n, for one weight λ_k ≥ 0 per [part](Self::parts): the subproblem is then solved by Newton's
-    /// method, with all parts at once. None (the default): it is solved by cuts of h. The answer must not be a matrix
-    /// for some outputs and none for others.
+    /// Σ λ_k Gᵀ∇²h_k G, n × n, for one weight λ_k ≥ 0 per [part](Self::parts): the subproblem is then solved by
+    /// Newton's method, with all parts at once. None (the default): it is solved by cuts of h. The answer must not be a
+    /// matrix for some outputs and none for others.
     fn parts_curvature(&self, _outputs: &Vector, _jacobian: &Matrix, _weights: &[f64]) -> Option<Matrix> {
         None
     }

@@ -268,8 +268,8 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// long in them as a change of shape by the first step: bodies that contact holds follow the surface as a whole, so
     /// that Θ hardly depends on its mean height. Other controls are their own coordinates.
     ///
-    /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean of the n heights of a body by κ
-    /// and keeps differences.
+    /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean of the n heights of a body by
+    /// κ and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
         let mut coordinates = Matrix::identity(start.len(), start.len());
         let scene = &self.solver().problem().scene;

@@ -160,8 +160,9 @@ impl<S: ContactSolver> ContactShape<S> {
         Ok((Vector::from_vec(self.problem().map.pull_back(&positions)), error))
     }
 
-    /// As [`ContactShape::pull_back`], for the positions of the nodes of all bodies, in the order of the scene, instead of the controls: with
-    /// y* = ∂J/∂y of a cost, ∂J/∂x per node and component, unit of J per mm; 0 for nodes that no control moves.
+    /// As [`ContactShape::pull_back`], for the positions of the nodes of all bodies, in the order of the scene, instead
+    /// of the controls: with y* = ∂J/∂y of a cost, ∂J/∂x per node and component, unit of J per mm; 0 for nodes that no
+    /// control moves.
     ///
     /// # Errors
     /// As [`ContactShape::pull_back`].

@@ -6,6 +6,7 @@ use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
 use crate::mesh_file;
 use crate::region::check_body;
+use crate::scene_parts::{Parts, required};
 use crate::short_form::{block_scene, mesh_scene, named};
 use crate::{AccuracyName, MethodName, Objective, OptimizerSection, OutputSection, SceneFile};
 use contact::contact_objective::ContactObjective;
@@ -202,18 +203,6 @@ impl Case {
 /// Least corner and lengths of the base over which a file of numbers is given: that of the only optimized block.
 fn base(scene: &Scene) -> Option<[[f64; 2]; 2]> {
     scene.shaped_block().map(|(block, _)| [block.corner, block.size])
-}
-
-/// A scene with what goes beside it.
-pub(crate) struct Parts {
-    pub scene: Scene,
-    pub start: Option<Vec<f64>>,
-    pub notes: Vec<String>,
-}
-
-/// A field that a scene of blocks, or of a mesh, must have.
-pub(crate) fn required<'f, T>(field: &str, value: Option<&'f T>, allowed: &str) -> Result<&'f T, SceneError> {
-    value.ok_or_else(|| SceneError::out_of_range(field, "missing", allowed))
 }
 
 /// A limit of a case that is solved with an equal one, as a limit of that one.

@@ -1,8 +1,8 @@
 //! The scene of a file with lists of bodies and of contacts.
 
-use crate::case::{Parts, required};
 use crate::either::Either;
 use crate::mesh_file::{self, MeshFile};
+use crate::scene_parts::{Parts, required};
 use crate::shapes::{counter_surface, heights};
 use crate::short_form::{default_subdomains, doubts_of_unit};
 use crate::{BlockSection, FaceSection, PairSection, PartSection, SceneFile, bodies};

@@ -22,6 +22,7 @@ mod objective;
 mod parts;
 mod print;
 mod region;
+mod scene_parts;
 mod schema;
 mod setting;
 mod settings;
@@ -227,8 +228,8 @@ impl SceneFile {
         self.body.as_ref().and_then(Either::one)
     }
 
-    /// The value of the field at a path such as `mesh.bricks` or `body[0].unit`, as it stands in a file; for a field that is not set,
-    /// what its documentation says of that.
+    /// The value of the field at a path such as `mesh.bricks` or `body[0].unit`, as it stands in a file; for a field
+    /// that is not set, what its documentation says of that.
     pub fn value(&self, path: &str) -> String {
         let table = toml::Table::try_from(self).unwrap_or_default();
         setting::value_at(&table, path).map_or_else(|| allowed::default(path), |value| value.to_string())

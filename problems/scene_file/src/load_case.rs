@@ -34,8 +34,8 @@ pub struct CaseSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub interference: Option<f64>,
-    /// By how much obstacles are moved along x1, x2, x3; in the short form, the counter surface, and the top of an upper
-    /// body with it along x3. Default not at all.
+    /// By how much obstacles are moved along x1, x2, x3; in the short form, the counter surface, and the top of an
+    /// upper body with it along x3. Default not at all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub offset: Option<[f64; 3]>,

@@ -66,7 +66,7 @@ impl Setting {
         Self { path: path.to_owned(), value: None }
     }
 
-    /// The same value for another field, such as that of a body of a list.
+    /// Its value for another field, such as that of a body of a list.
     #[must_use]
     pub fn at(&self, path: &str) -> Self {
         Self { path: path.to_owned(), value: self.value.clone() }

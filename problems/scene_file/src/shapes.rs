@@ -1,7 +1,7 @@
 //! Height surfaces of a scene file: what they are, where they start, what lies opposite to them.
 
-use crate::case::required;
 use crate::grid_file;
+use crate::scene_parts::required;
 use crate::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
 use contact::error::SceneError;
 use contact::scene::CounterSurface;

@@ -1,8 +1,8 @@
 //! Scenes in the short form: one optimized body, a block or a mesh, below an obstacle or an elastic block.
 
 use crate::bodies::body;
-use crate::case::{Parts, required};
 use crate::mesh_file::MeshFile;
+use crate::scene_parts::{Parts, required};
 use crate::shapes::{counter_surface, heights};
 use crate::{ContactSection, MeshBodySection, SceneFile};
 use contact::body::load_size;

@@ -124,8 +124,8 @@ pub struct SurfaceSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FairnessSection {
-    /// The factor of the bending ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² of the control net, a number without unit, which is added
-    /// to the objective.
+    /// The factor of the bending ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² of the control net, a number without unit, which is
+    /// added to the objective.
     #[schemars(range(min = 0.0, max = 1e60), extend("x-unit" = "unit of the objective"))]
     pub weight: f64,
 }

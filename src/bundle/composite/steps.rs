@@ -58,8 +58,8 @@ impl Steps {
         }
     }
 
-    /// Remembers a Jacobian, unless h has a curvature of its own and no constraints are [`curved`](are_curved): the model
-    /// then uses no curvature of the outputs.
+    /// Remembers a Jacobian, unless h has a curvature of its own and no constraints are [`curved`](are_curved): the
+    /// model then uses no curvature of the outputs.
     pub(super) fn remember(
         &mut self,
         outer: &dyn OuterFunction,

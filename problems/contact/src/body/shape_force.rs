@@ -6,7 +6,8 @@ use crate::body::loads::{add_moved_loads, loads_depend};
 use crate::body::{Body, Piece};
 use crate::shape::Velocities;
 
-/// The forces over the dofs of one piece of a body, given with its number, N, one vector per field of velocities; `u`: displacement over its dofs.
+/// The forces over the dofs of one piece of a body, given with its number, N, one vector per field of velocities; `u`:
+/// displacement over its dofs.
 pub fn shape_forces(
     (number, body): (usize, &Body),
     piece: &Piece,

@@ -26,7 +26,7 @@ pub struct CondensationPattern {
     symbolic: Arc<SymbolicFactor>,
     /// The nodes in contact rows, ascending, by their places in the piece.
     pub(super) contact: Vec<usize>,
-    /// The same nodes by their numbers in the mesh.
+    /// These nodes by their numbers in the mesh.
     contact_nodes: Vec<u32>,
 }
 

@@ -50,8 +50,8 @@ impl DirectSolver {
         result
     }
 
-    /// −∂(K u − f) over the bodies that controls shape, in the coordinates of their nodes, 0 at held dofs, N, one column
-    /// per field of velocities.
+    /// −∂(K u − f) over the bodies that controls shape, in the coordinates of their nodes, 0 at held dofs, N, one
+    /// column per field of velocities.
     pub(super) fn shape_forces(&self, state: &DirectState, velocities: &Velocities<'_>) -> Vec<(usize, Mat<f64>)> {
         let of_body = |number: usize| {
             let (body, piece) = (&self.problem.bodies[number], &self.patterns[number].piece);

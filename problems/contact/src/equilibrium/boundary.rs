@@ -1,8 +1,8 @@
 //! The contact nodes and the layout of their multipliers.
 //!
 //! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without
-//! friction, and as many as there are free directions beside the normal (method.md section 3). The nodes of the contacts
-//! of a scene follow each other; those that are glued come last.
+//! friction, and as many as there are free directions beside the normal (method.md section 3). The nodes of the
+//! contacts of a scene follow each other; those that are glued come last.
 
 use crate::body::{Body, beyond};
 use crate::equilibrium::contact_part::ContactPart;

@@ -3,7 +3,6 @@
 use crate::body::Body;
 use crate::body::elasticity::facet::tributary_areas;
 use crate::body::mesh::{CellFace, bounding_box};
-use crate::equilibrium::pair_rows::NO_WEIGHT;
 use crate::equilibrium::pair_sides::possible_masters;
 use crate::error::SceneError;
 use crate::mortar::{Along, Face, Facet, Mortar, MortarNode};
@@ -17,6 +16,9 @@ use std::sync::Arc;
 /// Part of the area of a slave node from which the master counts as lying opposite to it: with less, weights are large
 /// and say nothing.
 pub(crate) const COVERED: f64 = 1e-3;
+
+/// Weights up to this size are rounding of zero, as between equal grids.
+pub(crate) const NO_WEIGHT: f64 = 1e-12;
 
 /// What the rows of a contact are computed from.
 #[derive(Debug, Clone)]

@@ -41,10 +41,10 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<ContactState<Self::State>, ContactError>;
 
-    /// Sensitivities of the positions of the nodes of all bodies for a dual: j = ∂J/∂λ in packed rows, then, where
-    /// J depends on the displacements, l = ∂J/∂u with three entries per node of every body, in the order of the scene. What J depends
-    /// on the shape itself is not part of them. `tolerance`: relative residual of the adjoint, for solvers that
-    /// iterate.
+    /// Sensitivities of the positions of the nodes of all bodies for a dual: j = ∂J/∂λ in packed rows, then, where J
+    /// depends on the displacements, l = ∂J/∂u with three entries per node of every body, in the order of the scene.
+    /// What J depends on the shape itself is not part of them. `tolerance`: relative residual of the adjoint, for
+    /// solvers that iterate.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the adjoint, [`ContactError::NotFinite`] when it is singular,

@@ -9,8 +9,8 @@ use std::collections::HashMap;
 pub struct ContactFacets {
     /// The body of every corner.
     pub bodies: Vec<usize>,
-    /// Corners of the facets in the meshes, contact by contact, ascending within each: contact nodes, and nodes that are
-    /// none (supports hold their normals, or nothing lies opposite to them).
+    /// Corners of the facets in the meshes, contact by contact, ascending within each: contact nodes, and nodes that
+    /// are none (supports hold their normals, or nothing lies opposite to them).
     pub nodes: Vec<u32>,
     /// The corners of every facet by their places among the nodes.
     pub facets: Vec<Vec<usize>>,

@@ -5,16 +5,13 @@
 //! gap′ = n′·(v − (I − P) Σ w v̂) + n·(Σ_j m_ij′ x_j + Σ_j m_ij x_j′ − x_i′) + n·(I − P) Σ_j m_ij′ v̂_j
 //! ```
 
-use crate::equilibrium::contact_part::{COVERED, ContactPart, Pair};
-use crate::equilibrium::rows::dot;
-use crate::equilibrium::{ContactPoint, NodeRows, RowChange, RowSensitivities};
+use crate::equilibrium::ContactPoint;
+use crate::equilibrium::contact_part::{COVERED, ContactPart, NO_WEIGHT, Pair};
+use crate::equilibrium::node_rows::{NodeRows, RowChange, RowSensitivities, dot};
 use crate::error::ContactError;
 use crate::mortar::{Mortar, NodeSensitivity};
 use crate::shape::Velocities;
 use std::sync::Arc;
-
-/// Weights up to this size are rounding of zero, as between equal grids.
-pub(crate) const NO_WEIGHT: f64 = 1e-12;
 
 /// What the rows of a contact between two bodies are computed from at a shape.
 #[derive(Debug, Clone)]

@@ -9,8 +9,9 @@
 //! The plane goes through the centre of the slave facet; master facets are projected along its normal n₀. Only facets
 //! that face it count, and of several layers the nearest. A projected quadrilateral that is not convex counts as two
 //! triangles, one that folds over as none. Where the surface is covered all around, the weights have continuous
-//! derivatives, up to the error of the rule (none for parallelograms and triangles, about 1e-8 on distorted grids, more on facets seen edge-on).
-//! Where edges of both surfaces coincide, the derivatives are those of a master surface that goes on beyond its edge.
+//! derivatives, up to the error of the rule (none for parallelograms and triangles, about 1e-8 on distorted grids, more
+//! on facets seen edge-on). Where edges of both surfaces coincide, the derivatives are those of a master surface that
+//! goes on beyond its edge.
 
 mod cover;
 mod derivative;

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "NormalName", transform = crate::schema::names_only))]
 pub enum NormalKind {
-    /// The normal of an obstacle at the point nearest to the contact node; between two bodies, the mean of the normals of
-    /// the slave facets about the node, weighted by their areas.
+    /// The normal of an obstacle at the point nearest to the contact node; between two bodies, the mean of the normals
+    /// of the slave facets about the node, weighted by their areas.
     #[default]
     Surface,
     /// The axis x₃, as in the paper; gaps are measured along it.

@@ -32,17 +32,6 @@ pub struct AdmissibleSet {
 /// A row with its name, entries and sides.
 type NamedRow = (String, Vec<(usize, f64)>, [f64; 2]);
 
-/// The constants of U.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct ShapeBounds {
-    /// C₀, smallest control height, mm.
-    pub minimum_height: f64,
-    /// C₁, bound of the slope between neighbouring controls.
-    pub slope: f64,
-    /// Least and largest volume [C₂₁, C₂₂], mm³.
-    pub volume: [f64; 2],
-}
-
 /// Bounds and rows of the controls of one body.
 #[derive(Debug, Default)]
 struct Part {

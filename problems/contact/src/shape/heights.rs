@@ -3,7 +3,7 @@
 use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
 use crate::scene::Block;
-use crate::shape::{BodyMap, ShapeBounds, SplineKind, SplineSurface};
+use crate::shape::{BodyMap, SplineKind, SplineSurface};
 use serde::{Deserialize, Serialize};
 
 /// The face of a block that a height surface shapes.
@@ -26,6 +26,17 @@ impl ShapedFace {
             Self::Bottom => BlockFace::Bottom,
         }
     }
+}
+
+/// The constants of the admissible set U.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ShapeBounds {
+    /// C₀, smallest control height, mm.
+    pub minimum_height: f64,
+    /// C₁, bound of the slope between neighbouring controls.
+    pub slope: f64,
+    /// Least and largest volume [C₂₁, C₂₂], mm³.
+    pub volume: [f64; 2],
 }
 
 /// A spline surface over the base of a block, with its bounds and its start.

@@ -8,8 +8,7 @@
 //! A B-spline of degree count − 1 is the Bernstein basis. Nodes outside the box do not move. Where supports hold nodes,
 //! these do not move in the held directions.
 
-use crate::body::Body;
-use crate::body::mesh::bounding_box;
+use crate::body::mesh::{Mesh, bounding_box};
 use crate::error::SceneError;
 use crate::names::{find_face, nodes_of};
 use crate::shape::BodyMap;
@@ -191,20 +190,20 @@ impl LatticeShape {
         Ok([basis(0)?, basis(1)?, basis(2)?])
     }
 
-    /// The map of a body.
+    /// The map of a body with this mesh; `held`: orthonormal directions in which supports hold a node.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for names that the mesh does not have, and for a lattice that holds no node that may
     /// move.
-    pub(crate) fn map(&self, body: &Body) -> Result<BodyMap, SceneError> {
-        let (mesh, bases, controls) = (&*body.mesh, self.bases()?, self.controls());
+    pub(crate) fn map<'b>(&self, mesh: &Mesh, held: impl Fn(u32) -> &'b [[f64; 3]]) -> Result<BodyMap, SceneError> {
+        let (bases, controls) = (self.bases()?, self.controls());
         let mut by_point: HashMap<(usize, usize), Vec<(usize, f64)>> = HashMap::new();
         for (number, control) in controls.iter().enumerate() {
             for &(point, way, factor) in control {
                 by_point.entry((point, way)).or_default().push((number, factor));
             }
         }
-        let region = self.region_nodes(body)?;
+        let region = self.region_nodes(mesh)?;
         let mut fixed = BTreeSet::new();
         for name in &self.fixed {
             fixed.extend(nodes_of("lattice.fixed", name, mesh)?);
@@ -226,7 +225,7 @@ impl LatticeShape {
                 (Some(normals), Some(_)) => normals.get(&node).map(|normal| vec![*normal]),
             };
             let row = match (place, directions) {
-                (Some((xi, _)), Some(directions)) => self.rows(xi, &directions, &bases, &by_point, body.held(node)),
+                (Some((xi, _)), Some(directions)) => self.rows(xi, &directions, &bases, &by_point, held(node)),
                 _ => [vec![], vec![], vec![]],
             };
             moved += usize::from(row.iter().any(|row| !row.is_empty()));
@@ -241,13 +240,13 @@ impl LatticeShape {
     }
 
     /// The nodes of the region; none where all nodes in the box move.
-    fn region_nodes(&self, body: &Body) -> Result<Option<BTreeSet<u32>>, SceneError> {
+    fn region_nodes(&self, mesh: &Mesh) -> Result<Option<BTreeSet<u32>>, SceneError> {
         if self.region.is_empty() {
             return Ok(None);
         }
         let mut region = BTreeSet::new();
         for name in &self.region {
-            region.extend(nodes_of("lattice.region", name, &body.mesh)?);
+            region.extend(nodes_of("lattice.region", name, mesh)?);
         }
         Ok(Some(region))
     }

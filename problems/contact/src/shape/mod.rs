@@ -12,11 +12,11 @@ mod refinement;
 mod scene;
 mod surface;
 
-pub use admissible::{AdmissibleSet, ShapeBounds};
+pub use admissible::AdmissibleSet;
 pub use bending::bending;
 pub(crate) use bending::bending_rows;
 pub(crate) use heights::height_map;
-pub use heights::{HeightShape, ShapedFace};
+pub use heights::{HeightShape, ShapeBounds, ShapedFace};
 pub use lattice::{Coordinates, Directions, LatticeShape, NodeBound};
 pub(crate) use map::BodyMap;
 pub use map::{Positions, ShapeMap, Velocities};

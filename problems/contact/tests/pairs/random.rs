@@ -1,5 +1,5 @@
-//! Pairs of bodies at random: tilted, partly overlapping, grids from 1 : 1 to 1 : 8. Both solvers agree, and the forces on
-//! every body are in equilibrium. `PAIRS` sets the number of pairs.
+//! Pairs of bodies at random: tilted, partly overlapping, grids from 1 : 1 to 1 : 8. Both solvers agree, and the forces
+//! on every body are in equilibrium. `PAIRS` sets the number of pairs.
 
 use crate::grid::{KINDS, Point, mesh};
 use crate::setting::{body, lattice, pair};
@@ -82,7 +82,7 @@ fn wrong(scene: &Scene) -> Result<bool, String> {
             Err(error) => return Err(format!("{kind:?}: {error}")),
         };
         let state = shape.solve(&at, None, Accuracy::TIGHTEST).map_err(|error| format!("{kind:?}: {error}"))?;
-        // Forces of 1 N are small beside those that would bend these bodies: where they miss each other, all is rounding.
+        // Forces of 1 N are small beside those that bend these bodies: where they miss each other, all is rounding.
         let load = state.forces.total_normal_force().max(1.0);
         for body in shape.resultants(&state).unwrap().bodies {
             let off = body.imbalance().iter().fold(0.0, |off: f64, force| off.max(force.abs()));

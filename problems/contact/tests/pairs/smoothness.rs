@@ -58,8 +58,8 @@ fn roughness(five: &[Slope]) -> Option<f64> {
     is_same.then(|| (s(4) - 4.0 * s(3) + 6.0 * s(2) - 4.0 * s(1) + s(0)).abs() / 6.0)
 }
 
-/// Largest jump of dΘ/ds over its size: the roughest places of a coarse look, looked at ever more closely. A jump stays,
-/// and the roughness of a curve with kinks falls with the step.
+/// Largest jump of dΘ/ds over its size: the roughest places of a coarse look, looked at ever more closely. A jump
+/// stays, and the roughness of a curve with kinks falls with the step.
 fn largest_jump(distortion: f64, slave: usize) -> f64 {
     const STEPS: usize = 80;
     let shape = ContactShape::new(sliding(distortion, slave), SolverKind::Direct).unwrap();

@@ -1,5 +1,5 @@
-//! Subgradients through the mortar weights: central differences of the objective along random directions of the controls
-//! of both bodies, forward derivatives against adjoints, both normals, both kinds of cells, both solvers.
+//! Subgradients through the mortar weights: central differences of the objective along random directions of the
+//! controls of both bodies, forward derivatives against adjoints, both normals, both kinds of cells, both solvers.
 
 use crate::grid::{KINDS, Point, mesh};
 use crate::setting::{body, lattice, pair, stacked};

@@ -80,8 +80,8 @@ impl Corner {
     }
 }
 
-/// The four corners of a face, from that with the least coordinates on, and the edges from each to the next: counterclockwise from
-/// above.
+/// The four corners of a face, from that with the least coordinates on, and the edges from each to the next:
+/// counterclockwise from above.
 struct Rim {
     corners: [Corner; 4],
     edges: [Id; 4],

@@ -119,9 +119,7 @@ impl Constraints {
         let equality = [rows(|row| &row.entries), rows(|row| &row.weights)];
         let joined = cluster_rows(&all, numbering, &subdomains);
         let touched = touched(&all, &dofs, numbering.starts()[subdomains.start], own);
-        let owners = boundary.points.iter().zip(&node_owners);
-        let contact_owners: Vec<usize> =
-            owners.flat_map(|(point, owner)| std::iter::repeat_n(*owner, point.row_count())).collect();
+        let contact_owners = row_owners(boundary, &node_owners);
         let (ranks, owners) = (0..distribution.communication().size(), &contact_owners);
         let of_rank = |rank: usize| (0..owners.len()).filter(move |&row| distribution.owner(owners[row]) == rank);
         let constraints = Self {
@@ -261,6 +259,12 @@ fn contact_copies(nodes: &[HashSet<u32>], copies: &[Copies]) -> Vec<(usize, u32,
         nodes.into_iter().map(entry).collect::<Vec<_>>()
     };
     nodes.iter().enumerate().flat_map(of_body).collect()
+}
+
+/// The subdomain that owns every packed contact row.
+fn row_owners(boundary: &ContactBoundary, node_owners: &[usize]) -> Vec<usize> {
+    let owners = boundary.points.iter().zip(node_owners);
+    owners.flat_map(|(point, owner)| std::iter::repeat_n(*owner, point.row_count())).collect()
 }
 
 /// Which of the dofs of this process, from `first` on, have rows.
