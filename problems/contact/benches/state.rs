@@ -2,12 +2,13 @@
 //! tangents for 36 changes of the controls.
 //!
 //! The scene is Signorini (the paper's Example 5.1) at the flat start: total FETI runs on 12³ bricks in 2³ subdomains
-//! and on 24³ bricks in 4³, direct condensation on 12³. The last column is relative: factorisations to one product with
+//! and on 24³ bricks in 4³, direct condensation on 12³. "pair" is Hertz (Example 5.2) along the averaged normals of 12³ bricks
+//! below 9³: weights of the mortar and their derivatives are part of it. The last column is relative: factorisations to one product with
 //! F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, TangentsOf};
-use contact::scene::signorini;
+use contact::scene::{Geometry, NormalKind, hertz, signorini};
 use contact::tfeti::{DualOperator, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::error::Error;
@@ -35,6 +36,16 @@ fn median<T>(mut call: impl FnMut() -> T) -> f64 {
 
 fn shape(bricks: usize, subdomains: usize, kind: SolverKind) -> Result<ContactShape, Box<dyn Error>> {
     Ok(ContactShape::new(signorini()?.with_bricks([bricks; 3], [subdomains; 3]), kind)?)
+}
+
+/// Two bodies along true normals, whose grids do not match.
+fn pair() -> Result<ContactShape, Box<dyn Error>> {
+    let mut scene = hertz()?;
+    scene.contacts[0].normal = NormalKind::Surface;
+    if let Geometry::Block(upper) = &mut scene.bodies[1].geometry {
+        (upper.bricks, upper.subdomains) = ([9; 3], [1; 3]);
+    }
+    Ok(ContactShape::new(scene, SolverKind::Newton)?)
 }
 
 fn print(size: &str, what: &str, seconds: f64, unit: f64) {
@@ -82,5 +93,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         parts(&size, &shape)?;
         derivatives(&size, &shape)?;
     }
-    derivatives("direct", &shape(12, 2, SolverKind::Direct)?)
+    derivatives("direct", &shape(12, 2, SolverKind::Direct)?)?;
+    derivatives("pair", &pair()?)
 }

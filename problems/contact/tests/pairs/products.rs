@@ -21,16 +21,10 @@ fn products(bodies: [[usize; 2]; 2], friction: f64) -> usize {
     state.work().dual_operator_applications
 }
 
+/// Found: 54 against 51; the other way round 50, and 55 on 15³ bricks.
 #[test]
 fn grids_that_do_not_match_take_a_few_more_products() {
-    for friction in [0.3, 0.0] {
-        let matching = products([[25, 5], [25, 5]], friction);
-        for other in [[[25, 5], [20, 5]], [[20, 5], [25, 5]], [[25, 5], [15, 5]]] {
-            let found = products(other, friction);
-            println!(
-                "{other:?} friction {friction}: {found} products, {matching} of matching grids: {:.2}",
-                found as f64 / matching as f64
-            );
-        }
-    }
+    let [matching, other] = [[25, 5], [20, 5]].map(|upper| products([[25, 5], upper], 0.3));
+    println!("{other} products, {matching} of matching grids");
+    assert!(2 * other <= 3 * matching, "{other} products, {matching} of matching grids");
 }
