@@ -2,9 +2,9 @@
 //! tangents for 36 changes of the controls.
 //!
 //! The scene is Signorini (the paper's Example 5.1) at the flat start: total FETI runs on 12³ bricks in 2³ subdomains
-//! and on 24³ bricks in 4³, direct condensation on 12³. "pair" is Hertz (Example 5.2) along the averaged normals of 12³ bricks
-//! below 9³: weights of the mortar and their derivatives are part of it. The last column is relative: factorisations to one product with
-//! F, states and derivatives to a cold state with its adjoint.
+//! and on 24³ bricks in 4³, direct condensation on 12³. "pair" is Hertz (Example 5.2) along the averaged normals of 12³
+//! bricks below 9³: weights of the mortar and their derivatives are part of it. The last column is relative:
+//! factorisations to one product with F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, TangentsOf};

@@ -53,6 +53,10 @@ pub(crate) fn general_scene(file: &SceneFile, bodies: &[PartSection], folder: &P
     for (index, section) in pairs.iter().enumerate() {
         contacts.push(pair(&format!("contact[{index}]"), section, (file, &found), folder, &mut notes)?);
     }
+    if !contacts.is_empty() && contacts.iter().all(ContactScene::is_tied) {
+        let allowed = "at least one contact that may open: without one, no shape has a contact pressure";
+        return Err(SceneError::out_of_range("contact", "glued faces alone", allowed));
+    }
     let scene = Scene { name: file.name.clone(), bodies: found, contacts };
     Ok(Parts { scene, start: starts_elsewhere.then_some(start), notes })
 }

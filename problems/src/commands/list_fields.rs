@@ -1,8 +1,10 @@
 //! What options that stand for fields of the short form change in a scene with lists of bodies and contacts.
 
-use crate::commands::scene_options::Settings;
 use contact::error::SceneError;
 use scene_file::{PartSection, SceneFile, Setting};
+
+/// Fields with their values, or what no scene may have.
+pub type Settings = Result<Vec<Setting>, SceneError>;
 
 /// The bodies of a list that a field belongs to.
 type Picked = fn(&PartSection) -> bool;

@@ -1,7 +1,7 @@
 //! The options that stand for fields of the scene. Each is declared once, in [`OPTIONS`] or [`OPTIMIZER_OPTIONS`];
 //! parser, help with defaults, messages, and the changes of a scene derive from that.
 
-use crate::commands::list_fields::{first_in_lists, in_lists, stands_for, unfit_subdomains};
+use crate::commands::list_fields::{Settings, first_in_lists, in_lists, stands_for, unfit_subdomains};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -10,9 +10,6 @@ use scene_file::{MeasureName, MethodName, SceneFile, Setting, choices};
 
 /// Largest traction of a scene, MPa.
 const LARGEST_TRACTION: f64 = 1e15;
-
-/// Fields with their values, or what no scene may have.
-pub type Settings = Result<Vec<Setting>, SceneError>;
 
 /// An option and what it changes.
 pub struct SceneOption {

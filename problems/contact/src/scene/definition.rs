@@ -243,7 +243,11 @@ impl Scene {
         let allowed = "the smallest volume, then the largest (mm³)";
         SceneError::require(least <= largest, "admissible.volume", volume, allowed)?;
         let Some(Opposite::Heights(surface)) = self.opposite(index, heights.face) else { return Ok(()) };
-        let place = |[x1, x2]: [f64; 2]| format!("counter_surface at ({x1}, {x2})");
+        let what = match self.contacts.len() {
+            1 => "counter_surface".to_owned(),
+            _ => format!("what lies opposite to {} of {}", heights.face.block_face().name(), self.bodies[index].name),
+        };
+        let place = |[x1, x2]: [f64; 2]| format!("{what} at ({x1}, {x2})");
         let finite = "finite heights over the whole base";
         for at in heights.surface()?.places(block.size).map(|at| block.grid().moved(at)) {
             let height = surface.height(at[0], at[1]);

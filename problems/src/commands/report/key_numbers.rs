@@ -53,12 +53,8 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
             let body = &fields.bodies[number];
             body.mesh.volume(&body.positions).into()
         });
-        facts.push(Fact::row(
-            format!("volume_{stem}"),
-            &format!("volume of the {name} body"),
-            volumes.collect(),
-            "mm³",
-        ));
+        let quantity = format!("volume of the {name} body");
+        facts.push(Fact::row(format!("volume_{stem}"), &quantity, volumes.collect(), "mm³"));
     }
     if objective.solver().problem().boundary.has_friction() {
         facts.push(row("friction_work", "friction work Σ|λ_T·slip|", "N·mm", &|shape, _| {
