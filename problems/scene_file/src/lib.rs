@@ -8,6 +8,7 @@
 
 mod allowed;
 mod bodies;
+mod by_name;
 mod case;
 mod check;
 mod contact_section;

@@ -1,6 +1,7 @@
 //! A field of a scene by its path, and the value that it is given.
 
 use crate::SceneFile;
+use crate::by_name::in_lists;
 use crate::check::{Checker, check};
 use crate::schema::{Node, place};
 use contact::error::SceneError;
@@ -79,7 +80,8 @@ impl Setting {
 }
 
 impl SceneFile {
-    /// The file with other values of some fields.
+    /// The file with other values of some fields. In a scene with lists, paths of the short form lead to the bodies of
+    /// these names, and to the contacts.
     ///
     /// # Errors
     /// As [`SceneFile::parse`]; [`SceneError::OutOfRange`] for an entry beyond the end of a list.
@@ -87,7 +89,7 @@ impl SceneFile {
         let failed = |reason: String| SceneError::File { path: CHANGED.to_owned(), reason };
         let table = Table::try_from(self).map_err(|error| failed(error.to_string()))?;
         let mut whole = Value::Table(table);
-        for Setting { path, value } in settings {
+        for Setting { path, value } in &in_lists(self, settings) {
             put(&mut whole, &steps(path), value.as_ref(), path)?;
         }
         let table: Table = whole.try_into().map_err(|error: toml::de::Error| failed(error.to_string()))?;
