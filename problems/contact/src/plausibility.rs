@@ -8,6 +8,8 @@ use crate::deformation::Deformation;
 use crate::equilibrium::{
     ContactFacets, ContactForces, ContactProblem, ContactRows, ContactStatus, MAX_RESIDUAL, SolvedBody,
 };
+use crate::body::mesh::BlockFace;
+use crate::scene::{CounterSurface, Scene};
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt;
@@ -177,7 +179,10 @@ fn obstacle(
             let point = ends.iter().find_map(|place| facets.points[*place])?;
             let contact = problem.boundary.points[point].contact;
             let ends = ends.map(|place| bodies[facets.bodies[place]].positions[facets.nodes[place] as usize]);
-            Turns::along(ends, |x| problem.geometry.counter_normal(contact, x))
+            match block_surface(&problem.scene, contact) {
+                Some(surface) => Turns::along(ends, |x| upright_normal(surface, x)),
+                None => Turns::along(ends, |x| problem.geometry.counter_normal(contact, x)),
+            }
         })
         .collect();
     let turn = turns.iter().map(|turns| turns.angle).fold(0.0, f64::max).to_degrees();
@@ -191,6 +196,23 @@ fn obstacle(
              degrees, at least {MIN_EDGES_PER_WAVE} edges per wave)"
         )
     });
+}
+
+/// The surface of a master face where it is that of a block which no control moves: its mesh says less of it.
+fn block_surface(scene: &Scene, contact: usize) -> Option<&CounterSurface> {
+    let master = scene.contacts[contact].master_face()?;
+    let body = &scene.bodies[master.body];
+    let block = body.block().filter(|_| body.shape.is_none())?;
+    let faces = [(BlockFace::Bottom, &block.bottom), (BlockFace::Top, &block.top)];
+    faces.into_iter().find(|(face, _)| face.name() == master.face).map(|(_, surface)| surface)
+}
+
+/// Unit normal of a surface of heights above or below a place; none where it has none.
+fn upright_normal(surface: &CounterSurface, x: [f64; 3]) -> Option<[f64; 3]> {
+    let slope = surface.foot_along_x3(x).gap_slope;
+    let length = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let normal = slope.map(|x| -x / length);
+    normal.iter().all(|x| x.is_finite()).then_some(normal)
 }
 
 /// How the normal of the counter surface turns along an edge.
