@@ -4,11 +4,11 @@
 //! the discrete problem may be far from the body it stands for. Every warning has a code that does not change.
 
 use crate::body::elasticity::{Formulation, Material};
+use crate::body::mesh::BlockFace;
 use crate::deformation::Deformation;
 use crate::equilibrium::{
     ContactFacets, ContactForces, ContactProblem, ContactRows, ContactStatus, MAX_RESIDUAL, SolvedBody,
 };
-use crate::body::mesh::BlockFace;
 use crate::scene::{CounterSurface, Scene};
 use nalgebra::Vector3;
 use serde::Serialize;

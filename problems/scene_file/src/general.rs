@@ -106,7 +106,7 @@ fn part(
     match (shaped, &section.lattice) {
         (Some(_), Some(_)) => refused("lattice", "a surface or a lattice, not both")?,
         (Some((shape, controls)), None) => (body.shape, start) = (Some(ShapeScene::Heights(shape)), controls),
-        (None, Some(lattice)) => body.shape = Some(ShapeScene::Lattice(lattice.shape(&*body.mesh()?.0)?)),
+        (None, Some(lattice)) => body.shape = Some(ShapeScene::Lattice(lattice.shape(&body.mesh()?.0)?)),
         (None, None) => {}
     }
     if let Geometry::Mesh(geometry) = &body.geometry {

@@ -92,9 +92,7 @@ fn stresses(
 /// By how much bodies are moved so that contact surfaces are seen: the master of a contact from its slave by a vector
 /// of the slave face. Bodies that are glued stay together.
 pub fn apart(scene: &Scene, surfaces: &[ContactSurface], by: impl Fn(&ContactSurface) -> [f64; 3]) -> Vec<[f64; 3]> {
-    let towards = |contact: usize| {
-        surfaces.iter().find(|surface| surface.contact == contact).map_or([0.0; 3], |surface| by(surface))
-    };
+    let towards = |contact: usize| surfaces.iter().find(|surface| surface.contact == contact).map_or([0.0; 3], &by);
     let mut places: Vec<Option<[f64; 3]>> = vec![None; scene.bodies.len()];
     for root in 0..places.len() {
         places[root].get_or_insert([0.0; 3]);
