@@ -12,9 +12,11 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
 
-const SCENES: [&str; 10] = [
+const SCENES: [&str; 12] = [
     "signorini",
     "hertz",
+    "hertz_bodies",
+    "stack",
     "signorini_frictionless",
     "flat_punch",
     "tangential",
@@ -33,11 +35,6 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap()
 }
 
-/// The scene of hertz.toml in the short form.
-fn short_form() -> String {
-    std::fs::read_to_string(folder().join("../tests/data/hertz_short.toml")).unwrap()
-}
-
 fn read(name: &str) -> SceneFile {
     SceneFile::read(&folder().join(format!("{name}.toml"))).unwrap()
 }
@@ -53,8 +50,8 @@ fn the_embedded_scenes_are_the_paper_s_examples() {
 
 #[test]
 fn the_short_form_is_the_same_scene_and_reads_back() {
-    let file = SceneFile::parse(&short_form(), "short.toml").unwrap();
-    let [short, listed] = [&file, &read("hertz")].map(|file| Case::new(file, &folder()).unwrap());
+    let file = read("hertz");
+    let [short, listed] = [&file, &read("hertz_bodies")].map(|file| Case::new(file, &folder()).unwrap());
     assert_eq!(short.scene, listed.scene);
     let printed = file.print().unwrap();
     assert_eq!(SceneFile::parse(&printed, "printed").unwrap(), file);
@@ -100,7 +97,7 @@ fn all_examples_are_solved_and_certified_on_a_coarse_mesh() {
 
 #[test]
 fn misspelt_fields_suggest_the_nearest_one() {
-    let scene = short_form();
+    let scene = text("hertz");
     for (right, wrong, path) in [
         ("friction = 0.3", "frction = 0.3", "`frction` (did you mean `friction`?)"),
         ("bricks =", "brick =", "`mesh.brick` (did you mean `bricks`?)"),
@@ -122,7 +119,7 @@ fn misspelt_fields_suggest_the_nearest_one() {
 
 #[test]
 fn bad_values_are_refused_with_path_value_and_what_is_allowed() {
-    let scene = short_form();
+    let scene = text("hertz");
     for (right, wrong, words) in [
         ("friction = 0.3", "friction = -0.5", ["friction = -0.5", "≥ 0"]),
         ("friction = 0.3", "friction = nan", ["friction = nan", "finite"]),
@@ -145,7 +142,7 @@ fn bad_values_are_refused_with_path_value_and_what_is_allowed() {
 
 #[test]
 fn contradictions_between_fields_are_refused() {
-    let scene = short_form();
+    let scene = text("hertz");
     for (right, wrong, word) in [
         ("subdomains = [2, 2, 2]", "subdomains = [2, 5, 2]", "divisor of the 12 bricks"),
         ("degree = 3", "degree = 6", "1 ≤ degree ≤ 5"),
@@ -174,7 +171,7 @@ fn contradictions_between_fields_are_refused() {
 #[test]
 fn prescribed_displacements_and_interference_reach_the_scene() {
     let words = "held = [\"u1\", \"normal\"]\ndisplacement = [0.1, 0.0, 0.0]\nnormal_displacement = -0.1";
-    let scene = short_form().replacen("held = [\"u1\"]", words, 1);
+    let scene = text("hertz").replacen("held = [\"u1\"]", words, 1);
     let contact = "[contact]\ninterference = 0.02\n";
     let file = SceneFile::parse(&scene.replacen("[contact]\n", contact, 1), "my.toml").unwrap();
     let scene = Case::new(&file, &folder()).unwrap().scene;
