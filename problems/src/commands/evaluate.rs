@@ -9,6 +9,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::{number, plain_unit, raised};
 use crate::commands::optimize::summary::closing_facts;
 use crate::commands::report::files;
+use crate::commands::scene_words;
 use crate::commands::shape_facts;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, checks, solver_facts};
 use contact::contact_objective::PressureRoot;
@@ -48,7 +49,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let usage = session.processes.usage(shape.state().solver)?;
     rest.extend(closing_facts(&warnings, &arguments.left_out(solver), usage.as_ref())?);
     let cases = case_facts::cases(objective, &loaded.case.cases, (vec![], &[&shape]), None)?;
-    let groups = vec![Group::new("", result), cases, Group::new("State", states), Group::new("Work", rest)];
+    let scene = Group::new("", scene_words::parts(&solver.problem().scene)?);
+    let groups = vec![Group::new("", result), scene, cases, Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
     let object = json(&facts)?;
     let write =

@@ -83,12 +83,18 @@ pub fn facts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
     let bodies = if scene.bodies.len() == 1 { "1 body".to_owned() } else { format!("{} bodies", scene.bodies.len()) };
     let (mesh, pieces, friction) = (mesh(scene), pieces(scene), friction(scene));
     let fact = Fact::new("", "scene", format!("{bodies} of {mesh}, {pieces}, friction {friction}"), "");
-    if is_short(scene) { Ok(vec![fact]) } else { Ok([vec![fact], parts(scene)?].concat()) }
+    Ok([vec![fact], parts(scene)?].concat())
 }
 
-/// A line for every body and for every contact, and both as lists in JSON.
-fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
+/// A line for every body and for every contact, and both as lists in JSON; nothing for a scene of the short form.
+///
+/// # Errors
+/// [`Failure::Computation`] for a value that has no JSON.
+pub fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
     let mut facts = Vec::new();
+    if is_short(scene) {
+        return Ok(facts);
+    }
     for body in &scene.bodies {
         let shape = if body.shape.is_some() { format!(", {} controls", body.control_count()) } else { String::new() };
         facts.push(Fact::new("", &format!("body {}", body.name), format!("{}{shape}", mesh_of(body)), ""));

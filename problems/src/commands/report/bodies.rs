@@ -147,7 +147,8 @@ impl Relief {
             let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
             *normal = normal.map(|x| x / length);
         }
-        let is_height = problem.scene.bodies[surface.body].heights().is_some();
+        let heights = problem.scene.bodies[surface.body].heights();
+        let is_height = heights.is_some_and(|heights| heights.face.block_face().name() == surface.face);
         Self { is_height, surface, normals, start }
     }
 

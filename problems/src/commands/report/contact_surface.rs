@@ -11,6 +11,8 @@ pub struct ContactSurface {
     pub contact: usize,
     /// The body that it is a face of.
     pub body: usize,
+    /// The name of the face.
+    pub face: String,
     /// What names of pictures end with: nothing where the scene has one contact.
     pub suffix: String,
     /// What the contact is called: nothing where the scene has one.
@@ -41,8 +43,8 @@ impl ContactSurface {
         contacts.map(|(index, contact)| Self::new(problem, index, &contact.slave)).collect()
     }
 
-    /// The sides of contacts on bodies that controls shape, slaves before masters; of contacts whose sides are glued
-    /// only where a body has no other.
+    /// The sides of contacts that controls move, slaves before masters; of contacts whose sides are glued only where a
+    /// body has no other. The slave faces where controls move none of them.
     pub fn shaped(problem: &ContactProblem) -> Vec<Self> {
         let contacts = &problem.scene.contacts;
         let free = |body: usize| {
@@ -56,12 +58,15 @@ impl ContactSurface {
             for side in std::iter::once(&contact.slave).chain(contact.master_face()) {
                 if problem.map.shapes(side.body) && (!contact.is_tied() || !free(side.body)) {
                     let surface = Self::new(problem, index, side);
+                    if !surface.nodes.iter().any(|&node| problem.map.moves(side.body, node)) {
+                        continue;
+                    }
                     let suffix = if *side == contact.slave { "" } else { "_master" };
                     found.push(Self { suffix: format!("{}{suffix}", surface.suffix), ..surface });
                 }
             }
         }
-        found
+        if found.is_empty() { Self::all(problem) } else { found }
     }
 
     /// A side of a contact.
@@ -91,7 +96,7 @@ impl ContactSurface {
             true => "contact surface of the lower body".to_owned(),
             false => format!("contact surface {} of {}", side.face, scene.bodies[body].name),
         };
-        Self { contact, body, suffix, label, owner, nodes, points, faces, places, axes, normal }
+        Self { contact, body, face: side.face.clone(), suffix, label, owner, nodes, points, faces, places, axes, normal }
     }
 
     /// What the contact is called, as the end of a title.

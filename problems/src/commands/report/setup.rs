@@ -152,7 +152,7 @@ impl<'a> Counter<'a> {
         problem: &ContactProblem,
         positions: &[[f64; 3]],
         rows: &ContactRows,
-        (surface, block): (&'a ContactSurface, Option<usize>),
+        (surface, body): (&'a ContactSurface, Option<usize>),
         side: f64,
     ) -> Self {
         let node = |(&node, point): (&u32, &Option<usize>)| {
@@ -162,16 +162,20 @@ impl<'a> Counter<'a> {
                 sum(x, row.normal.map(|n| row.gap * n))
             })
         };
-        let feet: Vec<[f64; 3]> = surface.nodes().iter().zip(surface.points()).map(node).collect();
+        let block = body.and_then(|body| problem.scene.bodies[body].block());
+        let feet: Vec<[f64; 3]> = match block {
+            None => surface.nodes().iter().zip(surface.points()).map(node).collect(),
+            Some(block) => block.grid().places().map(|[x1, x2]| [x1, x2, block.bottom.height(x1, x2)]).collect(),
+        };
         let levels = feet.iter().map(|foot| dot(*foot, surface.normal));
         let (low, high) =
             levels.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
-        let top = block.and_then(|body| problem.scene.bodies[body].block()).map_or(f64::INFINITY, least_top);
+        let top = block.map_or(f64::INFINITY, least_top);
         let drawn = (RELIEF * side).min(MAX_CUT * (top - low));
         // Differences that are rounding are no curvature.
         let curved = high - low > 16.0 * f64::EPSILON * high.abs().max(side);
         let times = if curved { nice_below(drawn / (high - low)).max(1.0) } else { 1.0 };
-        Self { surface, block, feet, low, high, times }
+        Self { surface, block: body, feet, low, high, times }
     }
 
     /// By how much a level is drawn above its own.

@@ -5,4 +5,3 @@ mod geometry;
 mod properties;
 mod smoothness;
 mod surface;
-mod timing;
