@@ -65,7 +65,7 @@ pub struct ClassPanel {
 }
 
 /// Colours of the classes; black arrows are seen on all.
-const COLOURS: [&str; 5] = ["#e9e9e9", "#8fbbe3", "#f2b277", "#9fd3a8", "#d3a6d9"];
+pub(super) const COLOURS: [&str; 5] = ["#e9e9e9", "#8fbbe3", "#f2b277", "#9fd3a8", "#d3a6d9"];
 /// Least distance of arrows along one axis or the other, points; a little less than a 16th of a panel's longer side.
 const MIN_DISTANCE: f64 = 17.4;
 /// Length of the longest arrow, in distances of arrows.

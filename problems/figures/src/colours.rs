@@ -33,6 +33,11 @@ pub(super) fn curve(index: usize) -> &'static str {
     CURVES[index % CURVES.len()]
 }
 
+/// The colours of the scale at equal distances, from the least to the largest value.
+pub(super) fn scale() -> [String; SCALE.len()] {
+    SCALE.map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}"))
+}
+
 /// Colour of a share 0 … 1 of the scale; smaller and larger shares get the colours of its ends.
 pub(super) fn colour(share: f64) -> String {
     let position = share.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;

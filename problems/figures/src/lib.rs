@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! numbers ─┬─ Map, Classes, Lines, LogPlot, Landscape, Convergence ─┬─ Figure ─┬─ svg
-//!          └─ Solids, Surfaces, Sketch ───────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
+//!          ├─ Solids, Surfaces, Sketch ───────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
+//!          └─ Space ─ SpaceView: a view in three dimensions, which the script of a page draws (assets/viewer.js)
 //! scale (ticks), chart (axes), panel_layout (panels), marks (legends), plan (meshes in a plane), levels (areas),
-//! view (projection), layers (what covers what), oblique (bodies), regions (borders of areas), canvas (SVG text)
+//! view (projection), layers (what covers what), oblique (bodies), regions (borders of areas), canvas (SVG text), packing (numbers of a SpaceView)
 //! ```
 //! Bodies, surfaces and plans are points with triangles and quadrilaterals between them; [`grid_faces`] and
 //! [`box_faces`] are those of structured grids.
@@ -29,6 +30,7 @@ mod log_plot;
 mod map;
 mod marks;
 mod oblique;
+mod packing;
 pub mod page;
 mod panel_layout;
 mod panels;
@@ -39,6 +41,7 @@ mod regions;
 mod scale;
 mod sketch;
 mod solid;
+mod space;
 mod surfaces;
 mod view;
 
@@ -54,5 +57,6 @@ pub use map::{ColourScales, Map, MapPanel};
 pub use scale::{nice_below, number};
 pub use sketch::{Sign, Sketch, SketchBody, SketchMark};
 pub use solid::{SolidBody, SolidPanel, Solids};
+pub use space::{Space, SpaceBody, SpaceField, SpaceShape, SpaceState, SpaceView};
 pub use surfaces::{SurfacePanel, Surfaces};
 pub use view::View;

@@ -12,3 +12,15 @@ for (const figure of document.querySelectorAll("figure")) {
     figure.addEventListener("pointerdown", tell);
   }
 }
+
+// Views in three dimensions: their script is packed, since it is larger than most pages.
+const library = document.getElementById("space-library");
+if (library) {
+  const packed = Uint8Array.from(atob(library.textContent), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  new Response(stream).text().then((text) => {
+    const script = document.createElement("script");
+    script.textContent = text;
+    document.body.append(script);
+  });
+}

@@ -2,11 +2,14 @@
 //! offline.
 //!
 //! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds
-//! everything without its script, which only repeats the title of what the pointer is on below the figure, where it can
-//! be read at once and without a mouse.
+//! everything without its scripts. One repeats the title of what the pointer is on below the figure, where it can be read
+//! at once and without a mouse; one draws views in three dimensions by the library three.js, which the page brings along.
 
 use crate::figure::Figure;
+use crate::packing::{base64, compressed};
+use crate::space::SpaceView;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::sync::OnceLock;
 
 /// An HTML page that needs no other file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -59,6 +62,13 @@ pub enum Block {
         /// What each of them is called, and the picture.
         figures: Box<[(String, Figure); 2]>,
         /// What is to be seen in them.
+        caption: String,
+    },
+    /// Bodies that the reader turns, where there are scripts; not printed.
+    Space {
+        /// The bodies with their values.
+        view: SpaceView,
+        /// What is to be seen in it.
         caption: String,
     },
     /// Files beside the page, with what they hold.
@@ -130,6 +140,10 @@ impl Page {
                             @for block in &section.blocks { (block.markup()) }
                         }
                     }
+                    @if self.sections.iter().flat_map(|section| &section.blocks).any(Block::is_space) {
+                        (PreEscaped(format!("<!-- The view in three dimensions is drawn by three.js, packed below.\n\n{LICENCE}-->")))
+                        script #space-library type="application/octet-stream" { (PreEscaped(library())) }
+                    }
                     script { (PreEscaped(SCRIPT)) }
                 }
             }
@@ -139,6 +153,10 @@ impl Page {
 }
 
 impl Block {
+    fn is_space(&self) -> bool {
+        matches!(self, Self::Space { .. })
+    }
+
     fn markup(&self) -> Markup {
         match self {
             Self::Text(text) => html! { p { (text) } },
@@ -169,6 +187,14 @@ impl Block {
                     }
                 }
             }
+            Self::Space { view, caption } => html! {
+                figure.space hidden {
+                    div.space-view {}
+                    script type="application/octet-stream" { (PreEscaped(&view.data)) }
+                    figcaption { (caption) }
+                }
+                noscript { p { "The view in three dimensions needs scripts. The pictures show the same fields." } }
+            },
             Self::Files(files) => html! {
                 div.wide { table.files {
                     thead { tr { th { "file" } th { "holds" } } }
@@ -229,6 +255,15 @@ fn address(path: &str) -> String {
     };
     path.bytes().map(byte).collect()
 }
+
+/// The script of views in three dimensions with its library, as the script of the page unpacks it.
+pub(super) fn library() -> &'static str {
+    static LIBRARY: OnceLock<String> = OnceLock::new();
+    LIBRARY.get_or_init(|| base64(&compressed(&[include_bytes!("../assets/viewer.min.js")])))
+}
+
+/// The licence of the library.
+const LICENCE: &str = include_str!("../assets/THREE-LICENSE");
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");

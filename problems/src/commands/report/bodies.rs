@@ -18,7 +18,7 @@ use figures::{
 /// Largest displacement that is drawn, as a share of the largest side of the bodies.
 const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
 /// Largest lift of bodies above others, as a share of their largest height.
-const MAX_LIFT: f64 = 0.25;
+pub const MAX_LIFT: f64 = 0.25;
 
 /// Von Mises stresses on the deformed bodies, the shapes side by side on one scale: a figure of all bodies, or, where
 /// their materials differ, one per body. Shapes without fields are left out.
@@ -47,10 +47,7 @@ fn stresses(
     let seen = || shapes.iter().filter_map(|shape| shape.fields.as_ref().map(|fields| (shape, fields)));
     let bodies = || seen().flat_map(|(_, fields)| numbers.iter().map(|&number| &fields.bodies[number]));
     let sides: [f64; 3] = std::array::from_fn(|axis| bodies().map(|body| side(body, axis)).fold(0.0, f64::max));
-    let side_of_all = sides.into_iter().fold(0.0, f64::max);
-    let largest =
-        bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
-    let times = if largest > 0.0 { nice_below(MAX_SHOWN_DISPLACEMENT * side_of_all / largest).max(1.0) } else { 1.0 };
+    let times = magnification(bodies);
     // A body that is shown alone covers nothing.
     let surfaces = ContactSurface::all(problem);
     let is_short = scene_words::is_short(&problem.scene);
@@ -87,6 +84,14 @@ fn stresses(
         panels: seen().map(panel).collect(),
     }
     .figure()
+}
+
+/// The factor by which displacements of some bodies are drawn larger.
+pub fn magnification<'a, I: Iterator<Item = &'a BodyFields>>(bodies: impl Fn() -> I) -> f64 {
+    let side = bodies().flat_map(|body| (0..3).map(|axis| side(body, axis))).fold(0.0, f64::max);
+    let largest =
+        bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
+    if largest > 0.0 { nice_below(MAX_SHOWN_DISPLACEMENT * side / largest).max(1.0) } else { 1.0 }
 }
 
 /// By how much bodies are moved so that contact surfaces are seen: the master of a contact from its slave by a vector

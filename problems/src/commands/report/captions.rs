@@ -30,3 +30,7 @@ pub const SURFACE_MAP: &str = "The same from above. The lines join points of equ
 pub const COURSE: &str = "Every mark is an evaluation. Its shape says what became of it, its colour who proposed it. The line is the best \
     value so far. Values worse than the start do not stretch the axis: they stand at the upper edge with an arrow and their value. Where \
     there is a dashed line, no shape that carries the same total force can be below it.";
+
+pub const SPACE: &str = "The skins of the bodies. Drag to turn them; after a click, the wheel zooms; two fingers zoom and shift. The arrow keys, \
+    + and − do the same. Click a node for its number in the mesh of its body (from 0 on), its place without load and its values. They are \
+    stored in 16 bits: the digits that are shown are true to one unit of the last one.";

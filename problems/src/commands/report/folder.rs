@@ -9,6 +9,7 @@ use crate::commands::report::bodies::Relief;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::key_numbers::key_numbers;
+use crate::commands::report::space::space;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
 use crate::commands::run_kind::RUN;
@@ -40,6 +41,8 @@ pub struct ReportFolder<'a> {
 pub struct Parts {
     /// The key numbers of shapes.
     pub numbers: Section,
+    /// The shapes in three dimensions.
+    pub space: Section,
     /// The pictures with their captions.
     pub pictures: Vec<Block>,
 }
@@ -93,6 +96,11 @@ impl<'a> ReportFolder<'a> {
             let numbers = key_numbers(self.objective, &shapes);
             self.write("key_numbers.json", &json(&numbers.table())?, "the table of the result")?;
             self.parts.numbers = numbers.section();
+            let labels: Vec<&str> = solved.iter().map(|(_, label, _)| *label).collect();
+            if let Some(view) = space(self.objective, &labels, &shapes)? {
+                let block = Block::Space { view, caption: captions::SPACE.into() };
+                self.parts.space = Section::new("In three dimensions", vec![block]);
+            }
         }
         for shape in &shapes {
             let what = "pressure, traction, remaining gap and status of every contact node";

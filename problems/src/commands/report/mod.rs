@@ -11,6 +11,7 @@ mod pages;
 mod sections;
 mod setup;
 mod skin;
+mod space;
 mod stamp;
 pub mod study;
 mod tables;

@@ -21,7 +21,7 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
     let (objective, shapes) = (&ended.last.objective, ended.shapes);
     let what =
         if is_better(shapes[0].value, shapes[1].value) { "optimized shape" } else { "no better shape was found" };
-    let mut sections = vec![parts.numbers, pictures(parts.pictures)];
+    let mut sections = vec![parts.numbers, parts.space, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     let command =
         Block::Listing { title: "The command that writes STL, STEP and CSV".into(), text: export_command(folder) };
@@ -32,7 +32,7 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
 
 /// The report of an evaluation.
 pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape, facts: &Facts) -> Page {
-    let mut sections = vec![parts.numbers, pictures(parts.pictures)];
+    let mut sections = vec![parts.numbers, parts.space, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     sections.extend(controls(objective, shape.controls.as_slice()));
     sections.push(seconds(shape));
@@ -56,7 +56,7 @@ pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> P
         facts: shape_facts::states(objective, &shapes, ["", ""]),
         words: String::new(),
     };
-    let sections = vec![table, parts.numbers, pictures(parts.pictures), with_friction.section()];
+    let sections = vec![table, parts.numbers, parts.space, pictures(parts.pictures), with_friction.section()];
     page(objective, "with and without friction", lead, sections)
 }
 
