@@ -13,10 +13,8 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  CustomBlending,
   DoubleSide,
   Mesh,
-  NormalBlending,
   OrthographicCamera,
   Raycaster,
   Scene,
@@ -83,15 +81,16 @@ class Data {
 /// Distance of two levels.
 const stepOf = ({ low, high }) => (high - low) / 65534;
 
-/// A number with as many digits as are true when it is known up to half a step.
+/// A number with the digits that are true when it is known up to half a step.
 function written(value, step) {
   if (Number.isNaN(value)) return "–";
   if (!(step > 0)) return String(Number(value.toPrecision(6)));
-  const decimals = Math.floor(-Math.log10(step / 2));
+  const decimals = Math.floor(-Math.log10(step));
   const exponent = value === 0 ? 0 : Math.floor(Math.log10(Math.abs(value)));
-  if (exponent < -4 || exponent > 6) return value.toExponential(Math.min(Math.max(exponent + decimals, 0), 8));
+  const digits = exponent + decimals;
+  if (digits >= 0 && (exponent < -4 || exponent > 6)) return value.toExponential(Math.min(digits, 8));
   const rounded = decimals < 0 ? Math.round(value * 10 ** decimals) / 10 ** decimals : value;
-  return rounded.toFixed(Math.min(Math.max(decimals, 0), 12));
+  return rounded.toFixed(Math.min(Math.max(decimals, 0), 12)).replace(/^-(?=[0.]*$)/, "");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -172,11 +171,13 @@ class Skin {
     attribute("corner", corner);
     attribute("edges", edges);
     const own = { ...uniforms, ghost: { value: false } };
+    // What may be glass is drawn in the order of renderOrder, glass first.
     this.material = new ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       uniforms: own,
       side: DoubleSide,
+      transparent: true,
     });
     this.mesh = new Mesh(this.geometry, this.material);
   }
@@ -205,7 +206,6 @@ class Skin {
     values.needsUpdate = true;
     this.isGhost = shares.every((share) => share === NO_SHARE);
     this.material.uniforms.ghost.value = this.isGhost;
-    this.material.blending = this.isGhost ? CustomBlending : NormalBlending;
     this.material.depthWrite = !this.isGhost;
     this.mesh.renderOrder = this.isGhost ? -1 : 0;
   }
@@ -447,12 +447,13 @@ class View {
   legend({ name, unit, classes }, [low, high]) {
     const swatch = (colour) => element("span", { className: "space-swatch", style: `background:${colour}` });
     const without = this.skins.some((skin) => skin.isGhost)
-      ? " Bodies that have no such values are drawn as glass behind the others."
+      ? "Bodies that have no such values are drawn as glass behind the others."
       : "";
     if (classes.length > 0) {
       const { classColours } = this.header;
       this.bar.replaceChildren(
-        ...classes.map((label, i) => element("span", {}, swatch(classColours[i % classColours.length]), `${label} `)),
+        ...classes.flatMap((label, i) => [swatch(classColours[i % classColours.length]), label]),
+        ". ",
         without,
       );
       return;
@@ -462,7 +463,7 @@ class View {
       className: "space-gradient",
       style: `background:linear-gradient(90deg,${this.header.scale.join(",")})`,
     });
-    this.bar.replaceChildren(`${name}: `, written(low, step), gradient, `${written(high, step)} ${unit}.`, without);
+    this.bar.replaceChildren(`${name}: `, written(low, step), gradient, `${written(high, step)} ${unit}. `, without);
   }
 
   // -- camera
@@ -634,7 +635,8 @@ async function open(figure) {
     figure.view = new View(figure, data);
     figure.dataset.ready = String(Math.round(performance.now()));
   } catch (error) {
-    note.textContent = `This browser cannot show the view in three dimensions: ${error.message}. The pictures of the report show the same fields.`;
+    const why = `This browser cannot show the view in three dimensions: ${error.message}.`;
+    note.textContent = `${why} The pictures of the report show the same fields.`;
   }
 }
 

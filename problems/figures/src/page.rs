@@ -2,8 +2,9 @@
 //! offline.
 //!
 //! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds
-//! everything without its scripts. One repeats the title of what the pointer is on below the figure, where it can be read
-//! at once and without a mouse; one draws views in three dimensions by the library three.js, which the page brings along.
+//! everything without its scripts. One repeats the title of what the pointer is on below the figure, where it can be
+//! read at once and without a mouse. Another one draws views in three dimensions by the library three.js, which the page
+//! brings along.
 
 use crate::figure::Figure;
 use crate::packing::{base64, compressed};

@@ -235,41 +235,61 @@ mod tests {
     use crate::grid_faces;
     use crate::packing::tests::{Unpacked, unpacked};
 
+    /// A wave over a plate; rough, so that it is compressed less than fields are.
+    fn wave(side: usize, node: usize, number: usize) -> f64 {
+        let ([x, y], phase) = (at(side, node), number as f64);
+        (3.0 * x + phase).sin() * (2.0 * y).cos() + 0.1 * (1e4 * (node as f64 + 0.1).sqrt() + phase).sin()
+    }
+
+    fn at(side: usize, node: usize) -> [f64; 2] {
+        [node / side, node % side].map(|index| index as f64 / side as f64)
+    }
+
+    fn state(side: usize, bodies: usize, [shape, case, own]: [usize; 3]) -> SpaceState {
+        let nodes = side * side;
+        let contact = |node: usize| wave(side, node, 0) > 0.5;
+        let moved = |body: usize| {
+            let moved = move |node| [1, 2, 3].map(|axis| 0.1 * wave(side, node, own + 10 * axis + 100 * body));
+            (0..nodes).map(moved).collect()
+        };
+        let pressure = |node| if contact(node) { 1e3 * wave(side, node, own) } else { f64::NAN };
+        let status = |node| if contact(node) { (node % 3) as f64 } else { f64::NAN };
+        let stress = |body: usize| (0..nodes).map(|node| 300.0 * wave(side, node, own + 100 * body).abs()).collect();
+        let rest = vec![vec![f64::NAN; nodes]; bodies - 1];
+        let first = |values: Vec<f64>| [vec![values], rest.clone()].concat();
+        SpaceState {
+            shape,
+            case,
+            displacements: (0..bodies).map(moved).collect(),
+            values: vec![
+                first((0..nodes).map(pressure).collect()),
+                (0..bodies).map(stress).collect(),
+                first((0..nodes).map(status).collect()),
+            ],
+        }
+    }
+
     /// Plates of so many nodes along both sides, in states of which each has other values.
     fn plates(side: usize, bodies: usize, [shapes, cases]: [usize; 2]) -> Space {
         let nodes = side * side;
-        let at = |node: usize| [node / side, node % side].map(|index| index as f64 / side as f64);
-        // Rough, so that it is compressed less than fields are.
-        let wave = |node: usize, state: usize| {
-            let [x, y] = at(node);
-            (3.0 * x + state as f64).sin() * (2.0 * y).cos()
-                + 0.1 * (1e4 * (node as f64 + 0.1).sqrt() + state as f64).sin()
-        };
-        let place = |shape: usize| move |node| [100.0 * at(node)[0], 100.0 * at(node)[1], 100.0 + wave(node, shape)];
-        let contact = |node: usize| wave(node, 0) > 0.5;
-        let state = |(shape, case): (usize, usize)| {
-            let own = cases * shape + case;
-            let moved = move |node| [1, 2, 3].map(|axis| 0.1 * wave(node, own + 10 * axis));
-            let pressure = |node| if contact(node) { 1e3 * wave(node, own) } else { f64::NAN };
-            let status = |node| if contact(node) { (node % 3) as f64 } else { f64::NAN };
-            let stress = |node| 300.0 * wave(node, own + 7).abs();
-            let rest = vec![vec![f64::NAN; nodes]; bodies - 1];
-            let first = |values: Vec<f64>| [vec![values], rest.clone()].concat();
-            SpaceState {
-                shape,
-                case,
-                displacements: vec![(0..nodes).map(moved).collect(); bodies],
-                values: vec![
-                    first((0..nodes).map(pressure).collect()),
-                    vec![(0..nodes).map(stress).collect(); bodies],
-                    first((0..nodes).map(status).collect()),
-                ],
-            }
+        let place = |shape: usize, node: usize| {
+            let [x, y] = at(side, node);
+            [100.0 * x, 100.0 * y, 100.0 + wave(side, node, shape)]
         };
         let field = |name: &str, unit: &str, classes: &[&str]| SpaceField {
             name: name.into(),
             unit: unit.into(),
             classes: classes.iter().map(|name| (*name).to_owned()).collect(),
+        };
+        let body = |body: usize| SpaceBody {
+            name: format!("body {body}"),
+            numbers: (0..nodes as u32).map(|node| 7 * node).collect(),
+            faces: grid_faces([side, side]),
+            apart: [0.0, 0.0, 10.0 * body as f64],
+        };
+        let shape = |shape: usize| SpaceShape {
+            name: format!("shape \"{shape}\""),
+            places: vec![(0..nodes).map(|node| place(shape, node)).collect(); bodies],
         };
         Space {
             name: "space".into(),
@@ -280,22 +300,10 @@ mod tests {
                 field("von Mises stress", "MPa", &[]),
                 field("status", "", &["open", "stick", "slip"]),
             ],
-            bodies: (0..bodies)
-                .map(|body| SpaceBody {
-                    name: format!("body {body}"),
-                    numbers: (0..nodes as u32).map(|node| 7 * node).collect(),
-                    faces: grid_faces([side, side]),
-                    apart: [0.0, 0.0, 10.0 * body as f64],
-                })
-                .collect(),
-            shapes: (0..shapes)
-                .map(|shape| SpaceShape {
-                    name: format!("shape \"{shape}\""),
-                    places: vec![(0..nodes).map(place(shape)).collect(); bodies],
-                })
-                .collect(),
+            bodies: (0..bodies).map(body).collect(),
+            shapes: (0..shapes).map(shape).collect(),
             cases: (0..cases).map(|case| format!("case {case}")).collect(),
-            states: (0..shapes * cases).map(|own| state((own / cases, own % cases))).collect(),
+            states: (0..shapes * cases).map(|own| state(side, bodies, [own / cases, own % cases, own])).collect(),
         }
     }
 
