@@ -180,6 +180,13 @@ try {
     assert(last !== (await shot("start")), "the start looks like the optimum");
   }
 
+  const cases = await page.$$eval(".space-line select", ([, own]) => own.options.length);
+  if (cases > 1) {
+    const first = await shot();
+    await select(1, cases - 1);
+    assert(first !== (await shot("case")), "the load cases look alike");
+  }
+
   // Paper has the pictures only, as has a page without scripts.
   await page.emulateMediaType("print");
   assert.equal(await figure.evaluate((own) => getComputedStyle(own).display), "none");
