@@ -15,7 +15,8 @@ for (const figure of document.querySelectorAll("figure")) {
 
 // Views in three dimensions: their script is packed, since it is larger than most pages.
 const library = document.getElementById("space-library");
-if (library) {
+// Browsers that cannot unpack it show the pictures alone.
+if (library && "DecompressionStream" in window) {
   const packed = Uint8Array.from(atob(library.textContent), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   new Response(stream).text().then((text) => {

@@ -3,8 +3,8 @@
 //!
 //! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds
 //! everything without its scripts. One repeats the title of what the pointer is on below the figure, where it can be
-//! read at once and without a mouse. Another one draws views in three dimensions by the library three.js, which the page
-//! brings along.
+//! read at once and without a mouse. Another one draws views in three dimensions by the library three.js, which the
+//! page brings along.
 
 use crate::figure::Figure;
 use crate::packing::{base64, compressed};
@@ -142,7 +142,7 @@ impl Page {
                         }
                     }
                     @if self.sections.iter().flat_map(|section| &section.blocks).any(Block::is_space) {
-                        (PreEscaped(format!("<!-- The view in three dimensions is drawn by three.js, packed below.\n\n{LICENCE}-->")))
+                        (PreEscaped(format!("<!-- Views in three dimensions are drawn by three.js.\n\n{LICENCE}-->")))
                         script #space-library type="application/octet-stream" { (PreEscaped(library())) }
                     }
                     script { (PreEscaped(SCRIPT)) }
@@ -282,6 +282,19 @@ mod tests {
                 .html();
         let expected = format!("<tr><td>4</td><td class=\"long\" colspan=\"2\">{reason}</td></tr>");
         assert!(html.contains("<tr><td>1</td><td>2</td><td>3</td></tr>") && html.contains(&expected), "{html}");
+    }
+
+    #[test]
+    fn pages_with_views_in_three_dimensions_have_their_library_once_with_its_licence() {
+        let view = |data: &str| Block::Space { view: SpaceView { data: data.into() }, caption: "<c>".into() };
+        let page = |blocks| Page { sections: vec![Section::new("t", blocks)], ..Page::default() }.html();
+        let html = page(vec![view("AAAA"), view("BBBB")]);
+        assert!(html.contains(">AAAA</script>") && html.contains(">BBBB</script>") && html.contains("&lt;c&gt;"));
+        assert_eq!((html.matches(library()).count(), html.matches("<noscript>").count()), (1, 2));
+        assert!(html.contains("three.js authors") && html.contains("WITHOUT WARRANTY OF ANY KIND"));
+        assert!(!html.contains("http:") && !html.contains("https:"));
+        let without = page(vec![]);
+        assert!(!without.contains("three.js") && without.len() < 20_000);
     }
 
     #[test]

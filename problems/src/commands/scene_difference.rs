@@ -26,15 +26,29 @@ pub fn differences(
     let mut found = Vec::new();
     collect(String::new(), (value(there)?, value(here)?), &mut found);
     // The degree that a file leaves out is the default one.
-    let spline = |scene: &LoadedScene| scene.case.scene.heights().map(|heights| heights.spline);
-    let same_spline = spline(there) == spline(here);
-    let is_silent =
-        |field: &str| field.ends_with(".file") || field == "body.mesh" || (same_spline && field == "surface.degree");
+    let splines = |scene: &LoadedScene| {
+        let heights = scene.case.scene.bodies.iter().map(|body| body.heights().map(|heights| heights.spline));
+        heights.collect::<Vec<_>>()
+    };
+    let same_splines = splines(there) == splines(here);
+    let is_silent = |field: &str| {
+        field.ends_with(".file") || plain(field) == "body.mesh" || (same_splines && field.ends_with("surface.degree"))
+    };
     found.retain(|difference| !is_silent(&difference.field) && counts(&difference.field));
     Ok(found)
 }
 
+/// The lists whose entries are compared one by one.
+const LISTS: [&str; 2] = ["body", "contact"];
+
 fn collect(field: String, values: (Value, Value), found: &mut Vec<Difference>) {
+    let values = match values {
+        (Value::Array(there), Value::Array(here)) if LISTS.contains(&&*field) && there.len() == here.len() => {
+            let pairs = there.into_iter().zip(here).enumerate();
+            return pairs.for_each(|(index, values)| collect(format!("{field}[{index}]"), values, found));
+        }
+        other => other,
+    };
     let has_fields = |value: &Value| value.is_object() || value.is_null();
     let (there, here) = values;
     if there == here {
@@ -76,8 +90,14 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Whether a field is one of those given, or lies below one of them.
+/// A field without the numbers of entries: `body.block` for `body[1].block`.
+fn plain(field: &str) -> String {
+    field.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
+}
+
+/// Whether a field is one of those given, or lies below one of them; entries of a list count like the list.
 pub fn is_below(field: &str, fields: &[&str]) -> bool {
+    let field = plain(field);
     let mut ends = fields.iter().filter_map(|name| field.strip_prefix(name));
     ends.any(|end| end.is_empty() || end.starts_with('.'))
 }

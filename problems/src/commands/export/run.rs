@@ -19,7 +19,7 @@ use scene_file::{Case, SceneFile, read_text};
 use std::path::{Path, PathBuf};
 
 /// The fields of a scene that make its surfaces.
-const SURFACES: [&str; 8] = [
+const SURFACES: [&str; 19] = [
     "size",
     "surface.spline",
     "surface.degree",
@@ -28,10 +28,33 @@ const SURFACES: [&str; 8] = [
     "upper.top",
     "body.unit",
     "lattice",
+    "body.name",
+    "body.block.corner",
+    "body.block.size",
+    "body.block.bottom",
+    "body.block.top",
+    "body.surface.face",
+    "body.surface.spline",
+    "body.surface.degree",
+    "body.surface.control_points",
+    "body.lattice",
+    "contact.obstacle",
 ];
 /// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
-const NO_FRICTION_PROBLEM: [&str; 8] =
-    ["name", "mesh", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
+const NO_FRICTION_PROBLEM: [&str; 12] = [
+    "name",
+    "mesh",
+    "solver",
+    "optimizer",
+    "output",
+    "surface.start",
+    "objective",
+    "admissible",
+    "body.block.bricks",
+    "body.block.subdomains",
+    "body.surface.start",
+    "body.admissible",
+];
 /// Largest report that is read, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
@@ -220,6 +243,9 @@ fn other_files(there: &Scene, here: &Scene) -> Option<String> {
     };
     let meshes = |body: &BodyScene| if body.block().is_some() { None } else { Some(body.geometry.clone()) };
     let (bodies, others) = (&there.bodies, &here.bodies);
+    if bodies.len() != others.len() {
+        return Some(format!("it has {} bodies, this scene has {}", bodies.len(), others.len()));
+    }
     if obstacle(there) != obstacle(here) || bodies.iter().map(faces).ne(others.iter().map(faces)) {
         return Some("the heights of counter_surface differ".to_owned());
     }

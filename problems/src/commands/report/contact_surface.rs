@@ -96,7 +96,20 @@ impl ContactSurface {
             true => "contact surface of the lower body".to_owned(),
             false => format!("contact surface {} of {}", side.face, scene.bodies[body].name),
         };
-        Self { contact, body, face: side.face.clone(), suffix, label, owner, nodes, points, faces, places, axes, normal }
+        Self {
+            contact,
+            body,
+            face: side.face.clone(),
+            suffix,
+            label,
+            owner,
+            nodes,
+            points,
+            faces,
+            places,
+            axes,
+            normal,
+        }
     }
 
     /// What the contact is called, as the end of a title.
