@@ -69,10 +69,10 @@ pub const FILES: [&str; 4] = ["counter_surface.csv", "start.csv", "wanted_pressu
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// A contact shape optimization problem: elastic bodies, some of them with a shape that is optimized, and what they
-/// touch. Units: N, mm, MPa. Any number of bodies and of contacts are lists ([[body]], [[contact]]). Scenes of one
+/// touch. Units: N, mm, MPa. Any number of bodies and of contacts are lists (`[[body]]`, `[[contact]]`). Scenes of one
 /// optimized body have a short form: a block of bricks with an optimized top, over the base spanned by x1, x2 and
-/// standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of control points ([body], lattice),
-/// below a rigid obstacle or, of blocks, below a second elastic one (counter_surface, upper).
+/// standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of control points (`[body]`,
+/// lattice), below a rigid obstacle or, of blocks, below a second elastic one (counter_surface, upper).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {

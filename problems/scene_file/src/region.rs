@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RegionSection {
-    /// Name of the body: lower or upper of blocks, body of a mesh, or that of an entry of [[body]]. Default all bodies.
+    /// Name of the body: lower or upper of blocks, body of a mesh, or that of an entry of `[[body]]`. Default all
+    /// bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Smallest and largest x1. Default no bound.

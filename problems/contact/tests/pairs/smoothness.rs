@@ -41,7 +41,7 @@ fn sliding(distortion: f64, slave: usize) -> Scene {
     pair(bodies, slave, 0.0)
 }
 
-//// The slope of Θ with the statuses at a place.
+/// The slope of Θ with the statuses at a place.
 type Slope = (f64, Vec<contact::equilibrium::ContactStatus>);
 
 fn slope(objective: &ContactObjective, place: f64) -> Slope {
