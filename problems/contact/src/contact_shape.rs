@@ -134,12 +134,19 @@ impl<S: ContactSolver> ContactShape<S> {
             left_out.push("tangential multipliers (no friction)");
             left_out.push("nonsymmetric adjoint (no friction)");
         }
-        if scene.bodies.len() == 1 {
-            left_out.push("second body (rigid obstacle)");
-        } else if scene.bodies.iter().any(|body| body.shape.is_none()) {
-            left_out.push("repeated factorisation of bodies of fixed shape (factored once per run)");
-            left_out.push("shape derivative of bodies of fixed shape");
-        }
+        let fixed = scene.bodies.iter().filter(|body| body.shape.is_none()).map(|body| body.name.as_str());
+        left_out.extend(match &fixed.collect::<Vec<_>>()[..] {
+            [] if scene.bodies.len() == 1 => &["second body (rigid obstacle)"][..],
+            [] => &[],
+            ["upper"] => &[
+                "repeated factorisation of the upper body (its shape does not change: factored once per run)",
+                "shape derivative of the upper body (its shape does not change)",
+            ],
+            _ => &[
+                "repeated factorisation of bodies of fixed shape (factored once per run)",
+                "shape derivative of bodies of fixed shape",
+            ],
+        });
         left_out.extend(self.solver.left_out());
         left_out
     }

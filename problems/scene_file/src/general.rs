@@ -131,11 +131,18 @@ fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder
             }
         }
     };
+    let subdomains = block.subdomains.unwrap_or_else(|| block.bricks.map(default_subdomains));
+    for (axis, (bricks, count)) in block.bricks.iter().zip(subdomains).enumerate() {
+        if !bricks.is_multiple_of(count) {
+            let allowed = format!("a divisor of the {bricks} bricks per edge");
+            return Err(SceneError::out_of_range(format!("{at}.block.subdomains[{axis}]"), count, allowed));
+        }
+    }
     Ok(Block {
         corner: block.corner.unwrap_or_default(),
         size: block.size,
         bricks: block.bricks,
-        subdomains: block.subdomains.unwrap_or_else(|| block.bricks.map(default_subdomains)),
+        subdomains,
         bottom: face("bottom", ShapedFace::Bottom, block.bottom.as_ref())?,
         top: face("top", ShapedFace::Top, block.top.as_ref())?,
     })

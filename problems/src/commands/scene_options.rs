@@ -359,7 +359,8 @@ impl SceneChanges {
     /// [`SceneError::OutOfRange`] for what no scene may have.
     pub fn apply(&self, mut file: SceneFile) -> Result<SceneFile, SceneError> {
         for (option, text) in self.options.0.iter().filter_map(|(name, text)| find(name).map(|option| (option, text))) {
-            file = file.with(&(option.adapt)(&file, text, option.settings(text)?)?)?;
+            let named = |error| if file.parts().is_empty() { error } else { self.blame(error) };
+            file = file.with(&(option.adapt)(&file, text, option.settings(text)?).map_err(named)?)?;
         }
         if self.set.is_empty() { Ok(file) } else { file.with(&self.set) }
     }

@@ -81,9 +81,12 @@ pub fn contact_label(scene: &Scene, contact: usize) -> String {
 /// [`Failure::Computation`] for a value that has no JSON.
 pub fn facts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
     let bodies = if scene.bodies.len() == 1 { "1 body".to_owned() } else { format!("{} bodies", scene.bodies.len()) };
-    let (mesh, pieces, friction) = (mesh(scene), pieces(scene), friction(scene));
-    let fact = Fact::new("", "scene", format!("{bodies} of {mesh}, {pieces}, friction {friction}"), "");
-    Ok([vec![fact], parts(scene)?].concat())
+    let words = match is_short(scene) {
+        true => format!("{bodies} of {}, {}, friction {}", mesh(scene), pieces(scene), friction(scene)),
+        false if scene.contacts.len() == 1 => format!("{bodies}, 1 contact"),
+        false => format!("{bodies}, {} contacts", scene.contacts.len()),
+    };
+    Ok([vec![Fact::new("", "scene", words, "")], parts(scene)?].concat())
 }
 
 /// A line for every body and for every contact, and both as lists in JSON; nothing for a scene of the short form.
@@ -97,7 +100,8 @@ pub fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
     }
     for body in &scene.bodies {
         let shape = if body.shape.is_some() { format!(", {} controls", body.control_count()) } else { String::new() };
-        facts.push(Fact::new("", &format!("body {}", body.name), format!("{}{shape}", mesh_of(body)), ""));
+        let words = format!("{}, {}{shape}", mesh_of(body), pieces_of(body).trim_end_matches(" each"));
+        facts.push(Fact::new("", &format!("body {}", body.name), words, ""));
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
         let friction =

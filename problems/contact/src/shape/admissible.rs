@@ -93,7 +93,9 @@ impl AdmissibleSet {
 
     /// Bounds and rows that controls attain (up to the tolerance of [`AdmissibleSet::check`]), in words.
     pub fn active(&self, controls: &Vector) -> Vec<String> {
-        let attained = |value: f64, side: f64| (value - side).abs() <= ADMISSIBLE * side.abs().max(f64::MIN_POSITIVE);
+        let attained = |value: f64, side: f64| {
+            side.is_finite() && (value - side).abs() <= ADMISSIBLE * side.abs().max(f64::MIN_POSITIVE)
+        };
         let words = |(name, value, lower, upper): (String, f64, f64, f64)| match () {
             () if attained(value, lower) => Some(format!("{name} = {}, its least value", rounded(lower))),
             () if attained(value, upper) => Some(format!("{name} = {}, its largest value", rounded(upper))),
@@ -122,7 +124,9 @@ impl AdmissibleSet {
     /// Refuses controls outside the bounds and the first rows of U.
     fn check_some(&self, controls: &Vector, rows: usize) -> Result<(), SceneError> {
         let excess = |value: f64, lower: f64, upper: f64| {
-            (lower - value).max(value - upper) / lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE)
+            // A side that is open is no scale.
+            let sides = [lower, upper].into_iter().filter(|side| side.is_finite());
+            (lower - value).max(value - upper) / sides.fold(f64::MIN_POSITIVE, |scale, side| scale.max(side.abs()))
         };
         let expressions = self.expressions(controls).into_iter().take(controls.len() + rows);
         let worst = expressions.max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));

@@ -61,14 +61,15 @@ impl Comparison<'_> {
     /// The distance of the two optimized surfaces over the nodes of all contact surfaces that controls move.
     pub fn surface_difference(&self) -> SurfaceDifference {
         let problem = self.runs[0].objective.solver().problem();
-        let reliefs = Relief::all(problem);
-        let [with, without] = self.own.map(|shapes| {
-            let positions = problem.map.positions(shapes[1].controls.as_slice());
-            reliefs.iter().flat_map(|relief| relief.outward(&positions)).collect::<Vec<f64>>()
-        });
-        let differences: Vec<f64> = without.iter().zip(&with).map(|(a, b)| a - b).collect();
-        let (mean, shape) = mean_and_deviation(&differences);
-        SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
+        let positions = self.own.map(|shapes| problem.map.positions(shapes[1].controls.as_slice()));
+        let (mut differences, mut heights) = (Vec::new(), Vec::new());
+        for relief in Relief::all(problem) {
+            let [with, without] = positions.each_ref().map(|positions| relief.outward(positions));
+            differences.push(without.iter().zip(&with).map(|(a, b)| a - b).collect::<Vec<f64>>());
+            heights.push(with);
+        }
+        let (mean, shape) = of_surfaces(&differences);
+        SurfaceDifference { mean, shape, variation: of_surfaces(&heights).1 }
     }
 
     /// All facts: what friction is worth, whether that is proved, and the start and both optima in both models; with
@@ -199,6 +200,17 @@ impl Comparison<'_> {
         };
         vec![ratio, meaning]
     }
+}
+
+/// Mean over all surfaces, and root mean square of what is left of each without its own mean.
+fn of_surfaces(surfaces: &[Vec<f64>]) -> (f64, f64) {
+    let rest = surfaces.iter().flat_map(|values| {
+        let mean = mean_and_deviation(values).0;
+        values.iter().map(move |value| value - mean)
+    });
+    let square = rest.map(|value| value * value).sum::<f64>();
+    let all = surfaces.concat();
+    (mean_and_deviation(&all).0, (square / all.len().max(1) as f64).sqrt())
 }
 
 /// Mean, and root mean square of the rest.

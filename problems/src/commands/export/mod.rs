@@ -141,6 +141,10 @@ fn of_block(
 
 /// The files of the shape of a mesh, or of several bodies.
 fn of_mesh(problem: &ContactProblem, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
+    let shaped = problem.scene.bodies.iter().filter(|body| body.shape.is_some()).count();
+    if options.step && shaped > 1 {
+        refused("--step", "for the height surface of one block; several optimized bodies have --stl and --msh")?;
+    }
     if options.step {
         refused("--step", "for the height surface of a block; a mesh has --stl and --msh")?;
     }
