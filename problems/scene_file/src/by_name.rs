@@ -1,21 +1,13 @@
 //! Paths of the short form in a scene with lists: `upper.material` is the material of the body with that name.
 
-use crate::{SceneFile, Setting};
+use crate::SceneFile;
 
-/// The settings with paths of the lists of a scene; unchanged in the short form, and where no body has the name.
-pub(crate) fn in_lists(file: &SceneFile, settings: &[Setting]) -> Vec<Setting> {
+/// Where a path of the short form leads to in a scene with lists; nowhere for other paths, and where no body has the
+/// name.
+pub(crate) fn places(file: &SceneFile, path: &str) -> Vec<String> {
     if file.parts().is_empty() {
-        return settings.to_vec();
+        return Vec::new();
     }
-    let of_setting = |setting: &Setting| {
-        let paths = places(file, setting.path());
-        if paths.is_empty() { vec![setting.clone()] } else { paths.iter().map(|path| setting.at(path)).collect() }
-    };
-    settings.iter().flat_map(of_setting).collect()
-}
-
-/// Where a path of the short form leads to; nowhere for other paths.
-fn places(file: &SceneFile, path: &str) -> Vec<String> {
     let parts = || file.parts().iter().enumerate();
     let named = |name: &str| parts().find(|(_, part)| part.name == name).map(|(index, _)| format!("body[{index}]"));
     let (first, rest) = path.split_once('.').unwrap_or((path, ""));

@@ -1,7 +1,7 @@
 //! A field of a scene by its path, and the value that it is given.
 
 use crate::SceneFile;
-use crate::by_name::in_lists;
+use crate::by_name::places;
 use crate::check::{Checker, check};
 use crate::schema::{Node, place};
 use contact::error::SceneError;
@@ -89,7 +89,11 @@ impl SceneFile {
         let failed = |reason: String| SceneError::File { path: CHANGED.to_owned(), reason };
         let table = Table::try_from(self).map_err(|error| failed(error.to_string()))?;
         let mut whole = Value::Table(table);
-        for Setting { path, value } in &in_lists(self, settings) {
+        let of_lists = |setting: &Setting| {
+            let paths = places(self, &setting.path);
+            if paths.is_empty() { vec![setting.clone()] } else { paths.iter().map(|path| setting.at(path)).collect() }
+        };
+        for Setting { path, value } in &settings.iter().flat_map(of_lists).collect::<Vec<Setting>>() {
             put(&mut whole, &steps(path), value.as_ref(), path)?;
         }
         let table: Table = whole.try_into().map_err(|error: toml::de::Error| failed(error.to_string()))?;
