@@ -48,8 +48,13 @@ pub fn in_lists(file: &SceneFile, settings: Vec<Setting>) -> Settings {
         let places: Vec<usize> = (0..parts.len()).filter(|index| picked(&parts[*index])).collect();
         let is_of_one = field.starts_with("material") && !field.ends_with("formulation");
         if places.is_empty() || (is_of_one && places.len() > 1) {
-            let which = if places.is_empty() { "a body that has it" } else { "a scene with one optimized body" };
-            let allowed = format!("{which}; --set body[0].{field}=... sets that of one body");
+            let allowed = match (places.is_empty(), field.starts_with("block")) {
+                (false, _) => {
+                    format!("a scene with one optimized body; --set body[0].{field}=... sets that of one body")
+                }
+                (true, true) => "a scene with a block of bricks among its bodies".to_owned(),
+                (true, false) => "a scene with an optimized surface of a block".to_owned(),
+            };
             return Err(SceneError::out_of_range(setting.path(), "given", allowed));
         }
         let paths = places.into_iter().map(|index| format!("body[{index}].{field}"));
