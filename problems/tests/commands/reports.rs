@@ -243,7 +243,7 @@ fn the_page_says_everything_without_its_script_and_stays_small() {
     // Beside it stand the packed numbers and the packed library of the view in three dimensions.
     let packed = page.matches("type=\"application/octet-stream\"").count();
     assert_eq!((page.matches("<script>").count(), page.matches("<script").count()), (1, 1 + packed));
-    // What it shows at figures are titles that stand in the page: it holds no numbers, makes nothing, and hides nothing.
+    // What it shows at figures are titles of the page: it holds no numbers, makes nothing, and hides nothing.
     let script = script.split("// Views in three dimensions").next().unwrap();
     for word in ["innerHTML", "createElement", "hidden", "display", "fetch"] {
         assert!(!script.contains(word), "{word}");
