@@ -5,7 +5,7 @@ use crate::mesh_file::{self, MeshFile};
 use crate::scene_parts::{Parts, required};
 use crate::shapes::{counter_surface, heights};
 use crate::short_form::{default_subdomains, doubts_of_unit};
-use crate::{BlockSection, FaceSection, PairSection, PartSection, SceneFile, bodies};
+use crate::{BlockSection, FaceSection, MeshSection, PairSection, PartSection, SceneFile, bodies};
 use contact::error::SceneError;
 use contact::names::{find, find_face};
 use contact::scene::{
@@ -26,10 +26,11 @@ pub(crate) fn general_scene(file: &SceneFile, bodies: &[PartSection], folder: &P
         ("surface", file.surface.is_some()),
         ("admissible", file.admissible.is_some()),
         ("lattice", file.lattice.is_some()),
+        ("mesh", file.mesh != MeshSection::default()),
     ] {
         if given {
-            let allowed = "none beside [[body]]: bodies have their own block, surface, admissible and lattice, contacts \
-                           their own obstacle";
+            let allowed = "none beside [[body]]: bodies have their own block with bricks, surface, admissible and \
+                           lattice, contacts their own obstacle";
             return Err(SceneError::out_of_range(field, "a value", allowed));
         }
     }

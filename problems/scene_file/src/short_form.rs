@@ -6,8 +6,9 @@ use crate::scene_parts::{Parts, required};
 use crate::shapes::{counter_surface, heights};
 use crate::{ContactSection, MeshBodySection, SceneFile};
 use contact::body::load_size;
-use contact::body::mesh::{Mesh, bounding_box};
+use contact::body::mesh::{BlockFace, Mesh, bounding_box};
 use contact::error::SceneError;
+use contact::names::find;
 use contact::scene::{Block, BodyFace, BodyScene, CounterSurface, Geometry, Master, MeshGeometry, NormalKind, Scene};
 use contact::shape::{ShapeScene, ShapedFace};
 use std::path::Path;
@@ -47,6 +48,11 @@ pub(crate) fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, Scen
     let contact = contact_table(file)?;
     if file.lattice.is_some() {
         return Err(SceneError::out_of_range("lattice", "a table", "none for a block, which surface shapes"));
+    }
+    if let Some(face) = &contact.face {
+        let mut faces = BlockFace::ALL.map(BlockFace::name);
+        faces.sort_unstable();
+        find("contact.face", face, faces.into_iter())?;
     }
     if surface.face != ShapedFace::Top {
         return Err(SceneError::out_of_range("surface.face", "\"bottom\"", "\"top\" without [[body]]"));

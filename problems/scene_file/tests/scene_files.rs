@@ -74,8 +74,11 @@ fn a_printed_scene_reads_back_as_the_same_scene() {
 fn all_examples_are_solved_and_certified_on_a_coarse_mesh() {
     for name in SCENES {
         let mut file = read(name);
-        file.mesh.bricks = [4; 3];
-        file.mesh.subdomains = Some([2; 3]);
+        // A scene with lists of bodies has a mesh for every body instead.
+        if file.parts().is_empty() {
+            file.mesh.bricks = [4; 3];
+            file.mesh.subdomains = Some([2; 3]);
+        }
         let case = Case::new(&file, &folder()).unwrap();
         let solve = |kind| {
             let shape = ContactShape::new(case.scene.clone(), kind).unwrap();

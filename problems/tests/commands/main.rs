@@ -25,6 +25,7 @@ mod flat_foot;
 mod fuzz;
 mod just_touching;
 mod limits;
+mod lists;
 mod long_runs;
 mod loosely_held;
 mod messages;
