@@ -238,3 +238,26 @@ def test_the_worst_of_some_cases_is_the_objective():
         ("peak-pressure", "b"), ("stress", "a"), ("stress", "b"), ("stress", "c")
     ]
     assert state.limits[0]["value"] == state.cases["b"]["pressures"].max()
+
+
+def test_bodies_and_contacts_of_lists_are_told_apart():
+    state = contact.Scene.from_toml(SCENES / "stack.toml").evaluate()
+    assert list(state.bodies) == ["base", "pad", "head"]
+    # The pad is the slave of both contacts and the body whose top is optimized.
+    assert set(state.contact_bodies) == {1} and set(state.contacts) == {0, 1}
+    assert same_bits(state.positions, state.bodies["pad"]["positions"])
+    heights = state.positions[state.contact_nodes, 2]
+    assert np.allclose(heights[state.contacts == 0], 18) and np.allclose(heights[state.contacts == 1], 10)
+    assert state.pressures.ndim == 1 and state.gradient.shape == (5, 5)
+    # Both contacts carry the load of the head, 60 MPa on 14 mm x 14 mm.
+    force = (state.areas[:, None] * state.tractions)[:, 2]
+    assert np.allclose([force[state.contacts == number].sum() for number in (0, 1)], [11760, -11760])
+    assert state.bodies["head"]["von_mises"].shape == (6 * 6 * 3,)
+
+
+def test_what_lists_of_bodies_do_not_take_is_refused():
+    with pytest.raises(ValueError, match="mesh = a value"):
+        contact.Scene.from_toml(SCENES / "hertz_bodies.toml", mesh=SMALL)
+    corners = [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
+    with pytest.raises(ValueError, match="list of bodies"):
+        contact.Scene.from_mesh(corners, [range(8)], {"head": [[4, 5, 6, 7]]}, SCENES / "stack.toml")
