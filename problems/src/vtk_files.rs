@@ -19,7 +19,7 @@
 //! | `sensitivity` | points of contact | unit of J per mm | n·∂J/∂x of the node; only if asked for |
 //! | `contact` | cells of contact | – | number of the contact in the scene; only where there are several |
 
-use contact::body::mesh::CellKind;
+use contact::body::mesh::{CellKind, Mesh};
 use contact::equilibrium::ContactStatus;
 use contact::fields::{BodyFields, ContactFields, Fields};
 use exchange::vtk::{Array, Cell, Entry, Note, UnstructuredGrid, Values, VtkError, collection, unstructured};
@@ -133,19 +133,24 @@ fn unusable(index: usize, name: &str) -> FieldsError {
 /// way.
 const TETRAHEDRON: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
 
+/// The cells of a mesh whose first node has this place among the points.
+pub(crate) fn vtk_cells(mesh: &Mesh, first: usize) -> impl Iterator<Item = Cell> {
+    mesh.cells().map(move |cell| {
+        let node = |local: usize| first + cell.nodes[local] as usize;
+        match cell.kind {
+            CellKind::Hex8 => Cell::Hexahedron(std::array::from_fn(node)),
+            CellKind::Tet10 => Cell::QuadraticTetrahedron(TETRAHEDRON.map(node)),
+        }
+    })
+}
+
 /// All bodies as one grid; bodies share no points.
 fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
     let (mut points, mut cells, mut body_numbers) = (Vec::new(), Vec::new(), Vec::new());
     for (number, body) in (1..).zip(bodies) {
         let first = points.len();
         points.extend(body.positions.iter().copied());
-        cells.extend(body.mesh.cells().map(|cell| {
-            let node = |local: usize| first + cell.nodes[local] as usize;
-            match cell.kind {
-                CellKind::Hex8 => Cell::Hexahedron(std::array::from_fn(node)),
-                CellKind::Tet10 => Cell::QuadraticTetrahedron(TETRAHEDRON.map(node)),
-            }
-        }));
+        cells.extend(vtk_cells(&body.mesh, first));
         body_numbers.extend(std::iter::repeat_n(number, body.mesh.cell_count()));
     }
     let subdomains = bodies.iter().flat_map(|body| &body.subdomain).map(|&subdomain| subdomain as i32).collect();

@@ -109,9 +109,11 @@ fn the_controls_of_several_bodies_are_one_list() {
     let names: Vec<&str> =
         printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
     let bodies = ["base_plate_body.stl", "punch_body.stl", "cap_body.stl"];
-    let expected =
-        [&["controls.json", "surface.stl"], &bodies[..], &["surface.csv", "base_plate_body.msh", "punch_body.msh"]];
+    let meshes = ["base_plate_body.msh", "punch_body.msh", "base_plate_body.vtu", "punch_body.vtu"];
+    let expected = [&["controls.json", "surface.stl"], &bodies[..], &["change.csv"], &meshes];
     assert_eq!(names, expected.concat());
+    let change = std::fs::read_to_string(out.join("change.csv")).unwrap();
+    assert!(change.starts_with("body,face,node,") && change.contains("\nbase_plate,top,"), "{}", &change[..200]);
     let resumed = json(CONTACT, &["--resume", text(&run), "--max-evaluations", "3", "--json"]);
     assert_eq!(resumed["resumed_evaluations"], 2);
     json(CONTACT, &[&scene, "recheck", text(&run), "--json"]);

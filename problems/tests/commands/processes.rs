@@ -94,7 +94,7 @@ fn the_first_process_exports_alone() {
     let out = folder.path().join("out");
     let options = ["export", "--mesh", "4", "--friction-problem", "--csv", "--overwrite", "--out", text(&out)];
     let expected = alone(&options);
-    let files = || ["surface.csv", "friction/stiffness.mtx"].map(|name| std::fs::read(out.join(name)).unwrap());
+    let files = || ["change.csv", "friction/stiffness.mtx"].map(|name| std::fs::read(out.join(name)).unwrap());
     let written = files();
     assert_eq!(found(together(3, &options).unwrap()), expected);
     assert_eq!(files(), written);

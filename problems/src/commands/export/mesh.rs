@@ -1,16 +1,17 @@
-//! A shape as a mesh: skins of bodies as triangles, meshes as Gmsh files, the contact nodes as a table.
+//! A shape as a mesh: skins of bodies as triangles, meshes as files of Gmsh and of the Visualization Toolkit.
 
 use crate::commands::export::files::{OutputFile, body_file};
 use crate::commands::export::shape::failure;
 use crate::commands::failure::Failure;
-use crate::commands::numbers::exact;
-use crate::commands::scene_words::{self, stem};
+use crate::commands::scene_words;
+use crate::vtk_files::vtk_cells;
 use contact::body::Body;
 use contact::body::mesh::{CellFace, CellKind, Mesh};
 use contact::equilibrium::ContactProblem;
 use contact::scene::{BodyFace, BodyScene};
 use contact::shape::Positions;
 use exchange::gmsh::{self, GmshCell, GmshFacet, GmshMesh};
+use exchange::vtk::{Array, UnstructuredGrid, Values, unstructured};
 use exchange::{Triangle, stl};
 
 /// The slave faces of all contacts and the skins of all bodies as triangles between the nodes of the meshes.
@@ -22,7 +23,7 @@ pub fn triangles(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Outpu
     let facets = |face: &BodyFace| {
         let mesh = &problem.bodies[face.body].mesh;
         let faces = mesh.faces().get(&face.face).map_or(&[][..], Vec::as_slice);
-        faces.iter().flat_map(|own| divided(mesh, *own, &positions[face.body])).collect::<Vec<_>>()
+        flat(mesh, faces, &positions[face.body])
     };
     let contact: Vec<Triangle> = scene.contacts.iter().flat_map(|contact| facets(&contact.slave)).collect();
     let what = if scene.contacts.len() == 1 { "the contact face alone" } else { "the slave faces of all contacts" };
@@ -39,7 +40,7 @@ pub fn triangles(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Outpu
 /// [`Failure`] for positions that are no numbers.
 pub fn skin(problem: &ContactProblem, body: usize, positions: &Positions) -> Result<OutputFile, Failure> {
     let Body { mesh, name, .. } = &problem.bodies[body];
-    let triangles: Vec<Triangle> = mesh.skin().iter().flat_map(|face| divided(mesh, *face, &positions[body])).collect();
+    let triangles = flat(mesh, &mesh.skin(), &positions[body]);
     let what = format!("the {}, closed", scene_words::body(name));
     written(body_file(&problem.scene, body, "stl"), &what, &triangles)
 }
@@ -50,12 +51,18 @@ fn written(name: String, what: &str, triangles: &[Triangle]) -> Result<OutputFil
     Ok(OutputFile { name, content, what, triangles: Some(count) })
 }
 
-/// A face as triangles, counterclockwise seen from outside.
-fn divided(mesh: &Mesh, face: CellFace, positions: &[[f64; 3]]) -> Vec<Triangle> {
-    let x: Vec<[f64; 3]> = mesh.face_nodes(face).map(|node| positions[node as usize]).collect();
+/// Faces as triangles between nodes at some positions.
+fn flat(mesh: &Mesh, faces: &[CellFace], positions: &[[f64; 3]]) -> Vec<Triangle> {
+    let corner = |node: u32| positions[node as usize].map(|x| x as f32);
+    faces.iter().flat_map(|face| divided(mesh, *face)).map(|nodes| nodes.map(corner)).collect()
+}
+
+/// The triangles of a face by their nodes, counterclockwise seen from outside.
+pub fn divided(mesh: &Mesh, face: CellFace) -> impl Iterator<Item = [u32; 3]> {
+    let nodes: Vec<u32> = mesh.face_nodes(face).collect();
     let corners: &[[usize; 3]] =
-        if x.len() == 4 { &[[0, 1, 2], [0, 2, 3]] } else { &[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]] };
-    corners.iter().map(|corners| corners.map(|corner| x[corner].map(|x| x as f32))).collect()
+        if nodes.len() == 4 { &[[0, 1, 2], [0, 2, 3]] } else { &[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]] };
+    corners.iter().map(move |corners| corners.map(|corner| nodes[corner]))
 }
 
 /// The meshes of the optimized bodies in the shape, with their names.
@@ -63,16 +70,54 @@ fn divided(mesh: &Mesh, face: CellFace, positions: &[[f64; 3]]) -> Vec<Triangle>
 /// # Errors
 /// [`Failure`] for names that no Gmsh file has.
 pub fn gmsh_files(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
-    let positions = problem.map.positions(controls);
+    let content = |mesh: &Mesh, nodes: &[[f64; 3]], _: &[[f64; 3]]| {
+        gmsh::write(&gmsh_mesh(mesh, nodes), true).map_err(Failure::computation)
+    };
+    files(problem, controls, "msh", content)
+}
+
+/// The meshes of the optimized bodies in the shape as grids of the Visualization Toolkit, with their change.
+///
+/// # Errors
+/// [`Failure`] for positions that are no numbers.
+pub fn vtk_files(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
+    let content = |mesh: &Mesh, nodes: &[[f64; 3]], start: &[[f64; 3]]| {
+        let change = nodes.iter().zip(start).map(|(x, from)| std::array::from_fn(|axis| x[axis] - from[axis]));
+        let volumes = (0..mesh.cell_count()).map(|cell| mesh.volume_of(cell) as i32 + 1).collect();
+        let names = (1..).zip(mesh.volumes()).map(|(number, name)| format!("{number} {name}")).collect::<Vec<_>>();
+        let grid = UnstructuredGrid {
+            description: format!(
+                "{}: the mesh in a shape. Lengths in mm. change: from the start of the scene. volume: {}.",
+                problem.scene.name,
+                names.join(", ")
+            ),
+            points: nodes.to_vec(),
+            cells: vtk_cells(mesh, 0).collect(),
+            point_data: vec![Array::new("change", "mm", Values::Vectors(change.collect()))],
+            cell_data: vec![Array::new("volume", "", Values::Integers(volumes))],
+            ..UnstructuredGrid::default()
+        };
+        Ok(unstructured(&grid).map_err(Failure::computation)?.into_bytes())
+    };
+    files(problem, controls, "vtu", content)
+}
+
+/// A file per optimized body, from its mesh, its positions in the shape and those at the start.
+fn files(
+    problem: &ContactProblem,
+    controls: &[f64],
+    ending: &str,
+    content: impl Fn(&Mesh, &[[f64; 3]], &[[f64; 3]]) -> Result<Vec<u8>, Failure>,
+) -> Result<Vec<OutputFile>, Failure> {
+    let (start, positions) = (problem.start_positions(), problem.map.positions(controls));
     let file = |(number, body): (usize, &BodyScene)| {
         let mesh = &problem.bodies[number].mesh;
-        let content = gmsh::write(&gmsh_mesh(mesh, &positions[number]), true).map_err(Failure::computation)?;
+        let content = content(mesh, &positions[number], &start[number])?;
         // The body of a mesh alone has always been the lower one here.
         let name = if body.name == "body" { "lower" } else { &body.name };
         let (nodes, cells) = (mesh.node_count(), mesh.cell_count());
         let what = format!("the mesh of the {name} body in this shape: {nodes} nodes, {cells} cells, mm");
-        let name = body_file(&problem.scene, number, "msh");
-        Ok(OutputFile { name, content, what, triangles: None })
+        Ok(OutputFile { name: body_file(&problem.scene, number, ending), content, what, triangles: None })
     };
     problem.scene.bodies.iter().enumerate().filter(|(_, body)| body.shape.is_some()).map(file).collect()
 }
@@ -105,31 +150,4 @@ fn gmsh_mesh(mesh: &Mesh, nodes: &[[f64; 3]]) -> GmshMesh {
     }
     this.node_groups = mesh.node_sets().iter().map(|(name, nodes)| (name.clone(), wide(nodes))).collect();
     this
-}
-
-/// Places of the contact nodes at the start and in the shape; where there are several contacts, with the name of the
-/// slave body.
-pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
-    let (start, positions) = (problem.start_positions(), problem.map.positions(controls));
-    let several = problem.scene.contacts.len() > 1;
-    let head = "node,start_x1_mm,start_x2_mm,start_x3_mm,x1_mm,x2_mm,x3_mm\n";
-    let mut table = if several { format!("contact,body,{head}") } else { head.to_owned() };
-    let points = problem.boundary.contact_points();
-    for point in points {
-        let node = point.node as usize;
-        let (start, here) = (start[point.body][node], positions[point.body][node]);
-        let numbers: Vec<String> = start.into_iter().chain(here).map(exact).collect();
-        let lead = if several {
-            format!("{},{},", point.contact + 1, stem(&problem.scene, point.body))
-        } else {
-            String::new()
-        };
-        table += &format!("{lead}{node},{}\n", numbers.join(","));
-    }
-    let count = points.len();
-    OutputFile::text(
-        "surface.csv",
-        table,
-        format!("places of the {count} contact nodes at the start and in this shape"),
-    )
 }

@@ -1,5 +1,6 @@
 //! `export`: a shape as files for other programs. Nothing is solved for it.
 
+mod change;
 mod files;
 mod friction;
 mod mesh;
@@ -71,8 +72,15 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         Some(block) => files.extend(of_block(&problem, block, controls.as_slice(), options)?),
         None => files.extend(of_mesh(&problem, controls.as_slice(), options)?),
     }
-    if options.msh || (options.is_free() && block.is_none()) {
+    if options.csv || options.is_free() {
+        files.push(change::table(&problem, controls.as_slice()));
+    }
+    let is_mesh = options.is_free() && block.is_none();
+    if options.msh || is_mesh {
         files.extend(mesh::gmsh_files(&problem, controls.as_slice())?);
+    }
+    if options.vtu || is_mesh {
+        files.extend(mesh::vtk_files(&problem, controls.as_slice())?);
     }
     if options.friction_problem {
         files.extend(friction::matrices(&problem, controls.as_slice())?);
@@ -154,9 +162,6 @@ fn of_mesh(problem: &ContactProblem, controls: &[f64], options: &ExportOptions) 
     let mut files = Vec::new();
     if options.stl || options.is_free() {
         files.extend(mesh::triangles(problem, controls)?);
-    }
-    if options.csv || options.is_free() {
-        files.push(mesh::table(problem, controls));
     }
     Ok(files)
 }

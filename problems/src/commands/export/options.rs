@@ -18,19 +18,22 @@ pub struct ExportOptions {
     /// With --run: the shape of evaluation K instead.
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
-    /// Bodies and surface as triangles. Without one of --stl, --step, --csv, --msh, --friction-problem the first three
-    /// are written, or for a mesh --stl, --csv and --msh.
+    /// Bodies and surface as triangles. Without one of --stl, --step, --csv, --msh, --vtu, --friction-problem the first
+    /// three are written, or for a mesh --stl, --csv, --msh and --vtu.
     #[arg(long)]
     pub stl: bool,
     /// The B-spline surface, and the lower body as a solid, for CAD systems.
     #[arg(long)]
     pub step: bool,
-    /// A table of heights of the surface, or of places of the contact nodes of a mesh.
+    /// Tables: the change of shape (points, normals, amounts to remove), and the heights of the surface of a block.
     #[arg(long)]
     pub csv: bool,
     /// The mesh of the lower body in this shape as a Gmsh file, with its names.
     #[arg(long)]
     pub msh: bool,
+    /// The mesh of the lower body in this shape as a VTU file, with its change from the start.
+    #[arg(long)]
+    pub vtu: bool,
     /// Stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.
     #[arg(long)]
     pub friction_problem: bool,
@@ -50,7 +53,7 @@ impl ExportOptions {
 
     /// Whether no format is named.
     pub fn is_free(&self) -> bool {
-        !(self.stl || self.step || self.csv || self.msh || self.friction_problem)
+        !(self.stl || self.step || self.csv || self.msh || self.vtu || self.friction_problem)
     }
 
     /// Refuses options that do not go together; `has_folder`, `has_controls`: `--out` and `--controls` are given.
