@@ -19,6 +19,7 @@ use contact::standstill::standstill;
 use nonsmooth::interruption::watched;
 use nonsmooth::{Accuracy, OracleError, Report, StateSolver, VariableScaling, Vector};
 use numpy::PyArrayDyn;
+use problems::commands::{look_page, solved_page};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -59,6 +60,20 @@ fn shape(error: SceneError) -> PyErr {
         SceneError::NotAdmissible { .. } => crate::errors::OutsideDomain::new_err(error.to_string()),
         error => input(error),
     }
+}
+
+/// Bad input, or a computation that failed.
+fn failed(error: problems::commands::Failure) -> PyErr {
+    match error {
+        problems::commands::Failure::Input(words) => PyValueError::new_err(words),
+        error => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// Writes a first scene for a mesh beside it; the path of the scene.
+#[pyfunction]
+pub fn new_scene(mesh: std::path::PathBuf) -> PyResult<std::path::PathBuf> {
+    problems::commands::new_scene(&mesh).map_err(failed)
 }
 
 /// The measure of a scene's table, if it is told.
@@ -120,6 +135,28 @@ impl ContactScene {
     /// The scene as a complete commented file.
     fn toml(&self) -> PyResult<String> {
         self.file.print().map_err(input)
+    }
+
+    /// The scene before any solve, as an HTML page.
+    fn look(&self, py: Python<'_>) -> PyResult<String> {
+        let text = self.toml()?;
+        py.detach(|| look_page(&self.case, &text)).map_err(failed)
+    }
+
+    /// The start and the shape of some controls, solved, as an HTML page.
+    fn solved_page(&self, py: Python<'_>, controls: &Bound<'_, PyAny>) -> PyResult<String> {
+        let controls = convert::vector(controls, "controls", Some(self.case.scene.control_count()))?;
+        let objective = self.objective(py)?;
+        objective.solver().problem().admissible.check_shape(&controls).map_err(shape)?;
+        let start = Vector::from_vec(self.case.start.clone().unwrap_or_else(|| self.case.scene.start()));
+        let failure = Failure::default();
+        let watch = failure.clone();
+        let pages = || solved_page(objective, &[("start", &start), ("shape", &controls)]);
+        let page = py.detach(|| watched(move || signal(&watch), pages));
+        match failure.take() {
+            Some(error) => Err(error),
+            None => page.map_err(failed),
+        }
     }
 
     /// Name of the scene.

@@ -38,7 +38,10 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("OutsideDomain", module.py().get_type::<errors::OutsideDomain>())?;
     module.add("InfeasibleError", module.py().get_type::<errors::InfeasibleError>())?;
     #[cfg(feature = "contact")]
-    module.add_class::<contact_scene::ContactScene>()?;
+    {
+        module.add_class::<contact_scene::ContactScene>()?;
+        module.add_function(wrap_pyfunction!(contact_scene::new_scene, module)?)?;
+    }
     #[cfg(feature = "collection")]
     {
         module.add_class::<collection::CollectionProblem>()?;

@@ -240,11 +240,12 @@ function choice(label, texts, changed) {
 class View {
   constructor(figure, data) {
     [this.figure, this.data, this.header] = [figure, data, data.header];
+    // A scene before any solve has no displacements.
+    const isMoved = ({ low, high }) => low !== 0 || high !== 0;
+    this.moves = this.header.states.some((state) => state.displacement.some((axes) => axes.some(isMoved)));
     // Displacements have three parts; their length is the last field.
-    this.fields = [
-      ...this.header.fields,
-      { name: "displacement", unit: this.header.length, classes: [], length: true },
-    ];
+    const length = { name: "displacement", unit: this.header.length, classes: [], length: true };
+    this.fields = this.moves ? [...this.header.fields, length] : this.header.fields;
     this.uniforms = {
       scale: { value: this.header.scale.map(rgb) },
       grey: { value: rgb(GREY) },
@@ -322,8 +323,8 @@ class View {
           element("label", { hidden: !several }, this.common, " one scale for all"),
         ),
         line(
-          element("label", {}, "Displacements × ", this.times),
-          ...factors,
+          element("label", { hidden: !this.moves }, "Displacements × ", this.times),
+          ...(this.moves ? factors : []),
           element("label", { hidden: !apart }, "Bodies apart ", this.apart),
         ),
         line(...boxes, element("label", {}, this.lines, " mesh lines"), this.reset),

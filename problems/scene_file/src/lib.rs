@@ -12,6 +12,7 @@ mod by_name;
 mod case;
 mod check;
 mod contact_section;
+mod draft;
 mod either;
 mod general;
 mod grid_file;
@@ -41,6 +42,7 @@ pub use bodies::{
 };
 pub use case::Case;
 pub use contact_section::{ContactSection, FrictionSection};
+pub use draft::draft;
 pub use either::Either;
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::{LimitSection, QuantityName};

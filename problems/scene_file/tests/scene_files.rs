@@ -4,8 +4,10 @@
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{NodeWeight, PressureMeasure};
+use contact::equilibrium::ContactProblem;
 use contact::scene;
 use contact::scene::Held;
+use exchange::gmsh::{self, CellKind, FacetKind, GmshCell, GmshFacet, GmshMesh};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName, Objective, SceneFile, field_table, schema};
 use serde_json::Value;
@@ -343,4 +345,73 @@ fn accuracy_on_demand_is_refused_where_the_objective_can_vanish() {
     for objective in ["measure = \"pressure-norm\"", "measure = \"peak-pressure\"", "measure = \"stress-norm\""] {
         with_objective(&format!("{objective}\n[optimizer]\naccuracy = \"on-demand\"")).expect(objective);
     }
+}
+
+/// A ring of hexahedra around the axis x₂: its bore or its rim is the face that touches.
+fn ring(contact: &str) -> GmshMesh {
+    let (around, radii, width) = (24, [5.0, 8.0, 12.0], 6.0);
+    let node = |i: usize, r: usize, k: usize| ((i % around) * 3 + r) * 2 + k;
+    let place = |index: usize| {
+        let (i, r, k) = (index / 6, index / 2 % 3, index % 2);
+        let angle = std::f64::consts::TAU * i as f64 / around as f64;
+        [radii[r] * angle.cos(), width * k as f64, radii[r] * angle.sin()]
+    };
+    let cell = |i: usize, r: usize| {
+        let side = |k: usize| [node(i, r, k), node(i + 1, r, k), node(i + 1, r + 1, k), node(i, r + 1, k)];
+        [side(0), side(1)].concat()
+    };
+    let cells = (0..2 * around).map(|index| GmshCell {
+        kind: CellKind::Hex8,
+        nodes: cell(index / 2, index % 2),
+        tag: index as u64 + 1,
+    });
+    let facet = |index: usize, nodes: [usize; 4]| GmshFacet {
+        kind: FacetKind::Quad4,
+        nodes: nodes.to_vec(),
+        tag: (2 * around + index) as u64 + 1,
+    };
+    let round = |r: usize| move |i: usize| [node(i, r, 0), node(i + 1, r, 0), node(i + 1, r, 1), node(i, r, 1)];
+    let facets = (0..around).map(round(0)).chain((0..around).map(round(2)));
+    let names = if contact == "bore" { ["bore contact", "rim"] } else { ["bore", "rim contact"] };
+    GmshMesh {
+        nodes: (0..6 * around).map(place).collect(),
+        node_tags: (1..=6 * around as u64).collect(),
+        cells: cells.collect(),
+        facets: facets.enumerate().map(|(index, nodes)| facet(index, nodes)).collect(),
+        surfaces: names
+            .iter()
+            .enumerate()
+            .map(|(at, name)| ((*name).into(), (at * around..(at + 1) * around).collect()))
+            .collect(),
+        ..GmshMesh::default()
+    }
+}
+
+/// A face around the body gets a cylinder as its obstacle: a shaft in a bore, a bore around a rim.
+#[test]
+fn a_draft_knows_faces_around_the_body_units_and_missing_names() {
+    let folder = kit::scratch();
+    let drafted = |mesh: &GmshMesh| {
+        let file = folder.path().join("ring.msh");
+        std::fs::write(&file, gmsh::write(mesh, true).unwrap()).unwrap();
+        let text = scene_file::draft(&file).map_err(|error| error.to_string())?;
+        let scene = SceneFile::parse(&text, "draft").unwrap();
+        let case = Case::new(&scene, folder.path()).unwrap();
+        Ok::<_, String>((text, ContactProblem::new(case.scene).unwrap().preview()))
+    };
+    for (contact, radius, side) in [("bore", "radius = 5.0", "outside"), ("rim", "radius = 12.0", "inside")] {
+        let (text, preview) = drafted(&ring(contact)).unwrap();
+        assert!(text.contains("form = \"cylinder\"") && text.contains("axis = [0.0, 1.0, 0.0]"), "{text}");
+        assert!(text.contains(radius) && text.contains(&format!("side = \"{side}\"")), "{text}");
+        assert!(preview.gaps.iter().all(|gap| gap.abs() < 1e-9) && preview.contact_nodes == 48, "{preview:?}");
+    }
+    let mut small = ring("bore");
+    small.nodes.iter_mut().flatten().for_each(|x| *x *= 1e-3);
+    let (text, preview) = drafted(&small).unwrap();
+    assert!(text.contains("unit = \"m\"") && text.contains("radius = 5.0") && preview.contact_nodes == 48, "{text}");
+    let mut nameless = ring("bore");
+    nameless.surfaces.clear();
+    nameless.facets.clear();
+    let error = drafted(&nameless).unwrap_err();
+    assert!(error.contains("ring.msh: named faces = []") && error.contains("addPhysicalGroup(2"), "{error}");
 }

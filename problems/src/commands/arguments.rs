@@ -34,6 +34,8 @@ pub enum Command {
     Compare,
     /// A table over values of parameters (--vary), each evaluated, or optimized with --optimize
     Study,
+    /// The scene before any solve: bodies, names, supports, loads, gaps; with --out a page to turn it
+    Look,
     /// Objective, subgradient and certificates at one shape
     Evaluate,
     /// Taylor test of the subgradient at one shape
@@ -91,9 +93,9 @@ groups! {
     /// What is exported.
     export: ExportOptions, of Export;
     /// What changes in the scene.
-    scene: SceneChanges, of Optimize | Compare | Study | Evaluate | Verify | Recheck | Export;
+    scene: SceneChanges, of Optimize | Compare | Study | Look | Evaluate | Verify | Recheck | Export;
     /// The shape that is looked at.
-    shape: Shape, of Study | Evaluate | Verify | Export;
+    shape: Shape, of Study | Look | Evaluate | Verify | Export;
     /// How far that shape is off.
     error: HeightError, of Study | Evaluate;
     /// How the scene changes the optimizer.
@@ -101,7 +103,7 @@ groups! {
     /// Where an optimization begins.
     course: Course, of Optimize | Compare | Study;
     /// Where files go.
-    files: Files, of Optimize | Compare | Study | Evaluate | Verify | Export;
+    files: Files, of Optimize | Compare | Study | Look | Evaluate | Verify | Export;
     /// A series of fields.
     series: Series, of Optimize;
     /// What is computed besides at a state.
@@ -109,7 +111,7 @@ groups! {
     /// What is said of states and runs.
     results: Results, of Optimize | Compare | Study | Evaluate;
     /// What all commands take.
-    common: Common, of Optimize | Compare | Study | Evaluate | Verify | Recheck | Export;
+    common: Common, of Optimize | Compare | Study | Look | Evaluate | Verify | Recheck | Export;
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Args)]

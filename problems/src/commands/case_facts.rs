@@ -28,7 +28,7 @@ pub fn announce(objective: &ContactObjective, arguments: &Arguments) {
 }
 
 /// Gaps and supports in words.
-fn before(preview: &Preview) -> String {
+pub fn before(preview: &Preview) -> String {
     let [least, largest] = preview.gaps.map(number);
     let mut words = match preview.overlapping {
         0 => format!("initial gaps {least} to {largest} mm"),

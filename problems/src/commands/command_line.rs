@@ -10,7 +10,7 @@ use crate::commands::numbers::number;
 use crate::commands::output::{finish, left, notice};
 use crate::commands::scene_options::help_with_defaults;
 use crate::commands::shell_files::{asked, examples};
-use crate::commands::{compare, evaluate, export, optimize, recheck, study, verify};
+use crate::commands::{compare, evaluate, export, look, new_scene, optimize, recheck, study, verify};
 use clap::{Arg, value_parser};
 use contact::equilibrium::STAGE_TARGET;
 use contact::memory;
@@ -43,14 +43,26 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
     let scene = Arg::new(SCENE).value_name("SCENE.toml").value_parser(value_parser!(PathBuf));
     let parser = help_with_defaults(Arguments::parser(), None)
         .arg(scene.help("Scene file (docs/scenes.md; examples in problems/scenes)"))
-        .override_usage(format!("{binary} SCENE.toml [COMMAND] [OPTIONS]"))
+        .override_usage(format!("{binary} SCENE.toml [COMMAND] [OPTIONS]\n       {binary} new MESH.msh"))
         .after_help(examples(binary, "SCENE.toml "));
-    let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
+    let missing = || {
+        Failure::Input(
+            "SCENE.toml is missing; `new MESH.msh` writes one for a mesh, examples are in problems/scenes".into(),
+        )
+    };
     let open = |scene: Option<PathBuf>| {
         let scene = scene.ok_or_else(missing)?;
         Ok((SceneFile::read(&scene)?, Some(scene)))
     };
-    run_parsed(binary, parser, open, processes)
+    match new_scene::asked(binary, &words()) {
+        Some(result) => finish(result, None),
+        None => run_parsed(binary, parser, open, processes),
+    }
+}
+
+/// The words of the command line that are Unicode.
+fn words() -> Vec<String> {
+    std::env::args_os().skip(1).filter_map(|word| word.into_string().ok()).collect()
 }
 
 /// Runs what the words of the command line ask for; `open` reads the scene that they name.
@@ -62,8 +74,7 @@ fn run_parsed(
 ) -> ExitCode {
     let_large_writes_fail();
     let parser = parser.name(binary);
-    let words: Vec<String> = std::env::args_os().skip(1).filter_map(|word| word.into_string().ok()).collect();
-    if let Some(file) = asked(&parser, &words) {
+    if let Some(file) = asked(&parser, &words()) {
         return finish(file, None);
     }
     let (arguments, scene) = match Arguments::parse_by(parser, std::env::args_os()) {
@@ -122,6 +133,7 @@ pub fn execute_among(
         Command::Optimize => optimize::run(&loaded, &session),
         Command::Compare => compare::run(&loaded, &session),
         Command::Study => study::run(&loaded, &session),
+        Command::Look => look::run(&loaded, &session),
         Command::Evaluate => evaluate::run(&loaded, &session),
         Command::Verify => verify::run(&loaded.case, &session),
         Command::Recheck => recheck::run(&loaded, arguments),

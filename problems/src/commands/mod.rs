@@ -1,6 +1,7 @@
 //! The commands of the contact binaries.
 //!
-//! Contract (kept stable): `NAME [optimize|compare|study|evaluate|verify|recheck DIR|export] [options]`, for
+//! Contract (kept stable): `NAME [optimize|compare|study|look|evaluate|verify|recheck DIR|export]
+//! [options]`, for
 //! `contact3d` with a scene file before the command. Exit status: 0 success; 1 the computation failed, its result could
 //! not be printed or written, or a certificate does not agree; 2 bad input; 130 interrupted, with a report. `--json`
 //! prints one JSON object on stdout and nothing else there. `NAME completions SHELL` and `NAME man` print files for
@@ -24,6 +25,8 @@ mod limited_value;
 mod list_fields;
 mod loaded_scene;
 mod long_run;
+mod look;
+mod new_scene;
 mod numbers;
 mod optimize;
 mod output;
@@ -48,6 +51,9 @@ pub use failure::{Failure, failed};
 pub use folder::{Folder, json, printed_with_files};
 pub use interrupt::leave_interrupts;
 pub use long_run::StageLayer;
+pub use look::page as look_page;
+pub use new_scene::new_scene;
 pub use output::{arguments, finish, notice, print, print_failure};
+pub use report::solved_page;
 pub use solved_shape::{ContactObjective, SolvedShape, objective};
 pub use verify::{DIRECTION_SEED, smooth_taylor_test, taylor_steps};

@@ -3,7 +3,8 @@
 use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
 use crate::commands::numbers::exact;
-use contact::scene::{BodyFace, BodyScene, Geometry, Master, Scene};
+use contact::scene::{BodyFace, BodyScene, Geometry, Held, Load, LoadKind, Master, Scene, Support};
+use figures::number;
 use serde_json::json;
 
 /// Whether a scene is one of the short form of scene files: a mesh or a block below an obstacle or a second block.
@@ -126,6 +127,47 @@ pub fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
         .collect();
     facts.extend([Fact::json("bodies", &bodies)?, Fact::json("contacts", &contacts)?]);
     Ok(facts)
+}
+
+/// What a support holds: "u₁ = u₂ = 0"; none for one that holds nothing.
+pub fn held(support: &Support) -> Option<String> {
+    // Components of one value share it.
+    let mut values: Vec<(String, f64)> = Vec::new();
+    match support.held {
+        Held::Components(held) => {
+            for (held, name) in held.iter().zip(["u₁", "u₂", "u₃"]) {
+                match (held, values.last_mut()) {
+                    (Some(value), Some((names, last))) if value == last => *names += &format!(" = {name}"),
+                    (Some(value), _) => values.push((name.into(), *value)),
+                    (None, _) => {}
+                }
+            }
+        }
+        Held::Normal(value) => values.push(("u along the normal".into(), value)),
+    }
+    let held: Vec<String> = values.iter().map(|(names, value)| format!("{names} = {}", number(*value))).collect();
+    (!held.is_empty()).then(|| held.join(", "))
+}
+
+/// A load on a face in words; `area`: that of the face, mm².
+pub fn load(load: &Load, area: impl FnOnce() -> f64) -> String {
+    match &load.kind {
+        LoadKind::Traction(traction) => {
+            let size = traction.iter().map(|part| part * part).sum::<f64>().sqrt();
+            format!("{} MPa, in all {} N", vector(*traction), number(size * area()))
+        }
+        LoadKind::Pressure(pressure) => format!("pressure {} MPa", number(*pressure)),
+        LoadKind::Resultant { force, moment: [0.0, 0.0, 0.0], .. } => format!("{} N", vector(*force)),
+        LoadKind::Resultant { force, moment, .. } => {
+            format!("{} N with moment {} N mm", vector(*force), vector(*moment))
+        }
+        LoadKind::Formula(texts) => format!("traction ({}) MPa", texts.join(", ")),
+        LoadKind::BodyForce(force) => format!("{} N/mm³", vector(*force)),
+    }
+}
+
+fn vector(vector: [f64; 3]) -> String {
+    format!("({})", vector.map(number).join(", "))
 }
 
 fn mesh_of(body: &BodyScene) -> String {

@@ -7,8 +7,12 @@ use clap_mangen::Man;
 
 /// Examples at the end of the help. `scene`: what names the scene, with a blank, for a binary that takes any.
 pub fn examples(binary: &str, scene: &str) -> String {
+    let new = match scene {
+        "" => String::new(),
+        _ => format!("{binary} new part.msh\n      a first scene for a mesh, part.toml\n  "),
+    };
     format!(
-        "Examples:\n  \
+        "Examples:\n  {new}\
          {binary} {scene}--out results/run\n      \
          optimize; report, pictures and data go to results/run\n  \
          {binary} --resume results/run --max-evaluations 300\n      \

@@ -27,6 +27,7 @@ mod just_touching;
 mod limits;
 mod lists;
 mod long_runs;
+mod look;
 mod loosely_held;
 mod messages;
 mod nothing_lost;

@@ -1,6 +1,7 @@
 """Contact scenes: 3D contact with Coulomb friction as an objective. Units: N, mm, MPa."""
 
 import hashlib
+import html
 import json
 import math
 import os
@@ -15,6 +16,7 @@ from ._numbers import real
 
 try:
     from ._engine import ContactScene as _ContactScene
+    from ._engine import new_scene as _new_scene
 except ImportError as error:
     raise ImportError("this wheel of nonsmooth was built without the feature `contact`") from error
 
@@ -118,6 +120,77 @@ class Evaluation:
     warnings: list
     cases: dict
     limits: list
+
+    def plot(self, values="pressures", ax=None):
+        """Draw values over the contact nodes, seen along their mean normal, with matplotlib.
+
+        Parameters
+        ----------
+        values : str, optional
+            An attribute with one number per contact node: ``"pressures"``, ``"gaps"``, ``"status"`` or ``"areas"``.
+        ax : matplotlib Axes, optional
+            Where to draw; by default new axes.
+
+        Returns
+        -------
+        matplotlib Axes
+            The axes, lengths in mm.
+        """
+        allowed = ("pressures", "gaps", "status", "areas")
+        if values not in allowed:
+            raise ValueError(f"values = {values!r} is not allowed; allowed: {', '.join(allowed)}")
+        import matplotlib.pyplot as plt
+
+        drawn = np.asarray(getattr(self, values), dtype=float).ravel()
+        nodes, bodies = self.contact_nodes.ravel(), self.contact_bodies.ravel()
+        known = np.isfinite(drawn) & (nodes >= 0)
+        every = list(self.bodies.values())
+        places = np.array([every[body]["positions"][node] for body, node in zip(bodies[known], nodes[known])])
+        normal = np.nansum(self.normals.reshape(-1, 3)[known], axis=0)
+        axes = sorted(np.argsort(abs(normal))[:2])
+        ax = plt.subplots()[1] if ax is None else ax
+        points = ax.scatter(places[:, axes[0]], places[:, axes[1]], c=drawn[known], s=18)
+        unit = {"pressures": ", MPa", "gaps": ", mm", "areas": ", mm²", "status": " (0 open, 1 stick, 2 slip)"}[values]
+        ax.figure.colorbar(points, ax=ax, label=values + unit)
+        ax.set(xlabel=f"x{axes[0] + 1}, mm", ylabel=f"x{axes[1] + 1}, mm", aspect="equal")
+        return ax
+
+
+class Page:
+    """A page of HTML that needs nothing else: notebooks show it, `save` writes it.
+
+    Attributes
+    ----------
+    html : str
+        The whole page.
+    """
+
+    def __init__(self, page):
+        self.html = page
+
+    def _repr_html_(self):
+        return f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="900" style="border:0"></iframe>'
+
+    def save(self, path):
+        """Write the page to a file, for a browser."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.html)
+
+
+def new_scene(mesh):
+    """Write a first scene for a mesh beside it, from the names of its faces, as ``contact3d new`` does.
+
+    Parameters
+    ----------
+    mesh : path
+        A Gmsh file, ``part.msh``.
+
+    Returns
+    -------
+    str
+        The path of the scene, ``part.toml``: a commented file to be changed. One that exists is not overwritten.
+    """
+    return str(_new_scene(os.fspath(mesh)))
 
 
 class Scene:
@@ -242,6 +315,25 @@ class Scene:
     def to_toml(self):
         """The scene as a complete commented file. A mesh given as arrays is not part of it: the file names ``body.mesh``."""
         return self._scene.toml()
+
+    def show(self, controls=None):
+        """The scene as a page in three dimensions, which a notebook shows.
+
+        Parameters
+        ----------
+        controls : array_like, optional
+            Controls, mm. Without them, the page shows the scene before any solve: bodies, names, supports, loads and gaps. With
+            them, it shows the start and their shape, both solved: pressures, stresses, displacements.
+
+        Returns
+        -------
+        Page
+            The page; ``scene.show().save("scene.html")`` writes it for a browser.
+        """
+        _check_process()
+        if controls is None:
+            return Page(self._scene.look())
+        return Page(self._scene.solved_page(self._flat(controls, "heights" if self._scene.has_heights else "controls")))
 
     def evaluate(self, controls=None):
         """Solve the contact problem of a shape, and check what it means. An interrupt takes effect between its steps.

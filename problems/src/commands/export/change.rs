@@ -9,6 +9,7 @@
 use crate::commands::export::files::OutputFile;
 use crate::commands::export::mesh::divided;
 use crate::commands::numbers::{exact, number};
+use crate::commands::report::faces_by_name;
 use crate::commands::scene_words::stem;
 use contact::body::mesh::{CellFace, Mesh};
 use contact::equilibrium::ContactProblem;
@@ -76,7 +77,7 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
     let shaped = problem.scene.bodies.iter().enumerate().filter(|(_, body)| body.shape.is_some());
     for (body, _) in shaped {
         let (mesh, start, end) = (&problem.bodies[body].mesh, &start[body], &end[body]);
-        for (name, faces) in faces(mesh) {
+        for (name, faces) in faces_by_name(mesh) {
             let sheet = Sheet::new(mesh, &faces);
             let touches = problem.scene.contacts.iter().any(|contact| {
                 let mut sides = std::iter::once(&contact.slave).chain(contact.master_face());
@@ -103,17 +104,6 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
         number(added)
     );
     OutputFile::text("change.csv", table, what)
-}
-
-/// The faces of the skin by their names; a face of several names counts for the first one, one without a name for "".
-fn faces(mesh: &Mesh) -> Vec<(String, Vec<CellFace>)> {
-    let mut rest: HashSet<CellFace> = mesh.skin().into_iter().collect();
-    let mut found: Vec<(String, Vec<CellFace>)> = Vec::new();
-    for (name, faces) in mesh.faces() {
-        found.push((name.clone(), faces.iter().copied().filter(|face| rest.remove(face)).collect()));
-    }
-    found.push((String::new(), mesh.skin().into_iter().filter(|face| rest.contains(face)).collect()));
-    found
 }
 
 /// A name as a field of a table.

@@ -22,7 +22,7 @@ use figures::{ColourScales, Figure};
 use scene_file::OutputSection;
 
 /// Folder of the figures.
-const FIGURES: &str = "figures";
+pub const FIGURES: &str = "figures";
 /// Folder of the files for ParaView.
 pub const VTK: &str = "vtk";
 /// Opens the files for ParaView with a good view.
@@ -117,7 +117,7 @@ impl<'a> ReportFolder<'a> {
     fn draw_shapes(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
         let objective = self.objective;
         if let Some(first) = shapes.first() {
-            let sketch = setup::sketch(objective, first.solved.controls.as_slice())?;
+            let sketch = setup::sketch(objective.solver().problem(), first.solved.controls.as_slice())?;
             self.draw(sketch, "bodies, supports and loads", captions::SKETCH)?;
         }
         let surfaces = ContactSurface::all(objective.solver().problem());

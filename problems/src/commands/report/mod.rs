@@ -11,12 +11,16 @@ mod pages;
 mod sections;
 mod setup;
 mod skin;
+mod solved_page;
 mod space;
 mod stamp;
 pub mod study;
 mod tables;
 
-pub use bodies::Relief;
+pub use bodies::{MAX_LIFT as LIFT, Relief, apart};
 pub use contact_surface::ContactSurface;
-pub use folder::VTK;
+pub use folder::{FIGURES, VTK};
 pub use sections::{export_command, found_label};
+pub use setup::sketch;
+pub use skin::{Skin, extent, faces_by_name};
+pub use solved_page::solved_page;

@@ -5,12 +5,11 @@ use crate::commands::report::bodies::apart;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::skin::{Skin, extent};
 use crate::commands::scene_words;
-use crate::commands::solved_shape::ContactObjective;
 use contact::body::Body;
 use contact::body::mesh::CellFace;
 use contact::equilibrium::{ContactProblem, ContactRows, Positions};
 use contact::formula::Formula;
-use contact::scene::{Block, BodyScene, CounterSurface, Held, Load, LoadKind, Scene, Support};
+use contact::scene::{Block, BodyScene, CounterSurface, Load, LoadKind, Scene, Support};
 use contact::shape::ShapedFace;
 use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, View, nice_below, number};
 
@@ -23,6 +22,8 @@ const TRIANGLE: f64 = 0.08;
 const MAX_LIFT: f64 = 0.25;
 /// Drawn relief of the counter surface, as a share of the largest side.
 const RELIEF: f64 = 0.12;
+/// Least relief that is magnified, as a share of the largest side.
+const SEEN: f64 = 1e-6;
 /// Largest share of an upper body that the magnified surface cuts off.
 const MAX_CUT: f64 = 0.6;
 
@@ -30,8 +31,7 @@ const MAX_CUT: f64 = 0.6;
 ///
 /// # Errors
 /// [`Failure`] for controls without a shape, and for a sketch that cannot be drawn.
-pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, Failure> {
-    let problem = objective.solver().problem();
+pub fn sketch(problem: &ContactProblem, controls: &[f64]) -> Result<Figure, Failure> {
     let scene = &problem.scene;
     let positions = problem.positions(controls).map_err(Failure::computation)?;
     let sides: [f64; 3] = std::array::from_fn(|axis| {
@@ -172,8 +172,8 @@ impl<'a> Counter<'a> {
             levels.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
         let top = block.map_or(f64::INFINITY, least_top);
         let drawn = (RELIEF * side).min(MAX_CUT * (top - low));
-        // Differences that are rounding are no curvature.
-        let curved = high - low > 16.0 * f64::EPSILON * high.abs().max(side);
+        // Nobody sees a millionth of the size, and the normal of a plane may be rounded.
+        let curved = high - low > SEEN * high.abs().max(side);
         let times = if curved { nice_below(drawn / (high - low)).max(1.0) } else { 1.0 };
         Self { surface, block: body, feet, low, high, times }
     }
@@ -290,26 +290,11 @@ impl Place<'_> {
 
     /// None for a support that holds nothing.
     fn support(&self, support: &Support) -> Option<SketchMark> {
-        // Components of one value share it.
-        let mut values: Vec<(String, f64)> = Vec::new();
-        match support.held {
-            Held::Components(held) => {
-                for (held, name) in held.iter().zip(["u₁", "u₂", "u₃"]) {
-                    match (held, values.last_mut()) {
-                        (Some(value), Some((names, last))) if value == last => *names += &format!(" = {name}"),
-                        (Some(value), _) => values.push((name.into(), *value)),
-                        (None, _) => {}
-                    }
-                }
-            }
-            Held::Normal(value) => values.push(("u along the normal".into(), value)),
-        }
-        let held: Vec<String> = values.iter().map(|(names, value)| format!("{names} = {}", number(*value))).collect();
         let lines = self.spots(&support.face).into_iter();
         let line = |(x, normal): Spot| [sum(x, normal.map(|part| TRIANGLE * self.side * part)), x];
-        (!held.is_empty()).then(|| SketchMark {
+        scene_words::held(support).map(|held| SketchMark {
             sign: Sign::Support,
-            text: format!("{}: {}", self.words(&support.face), held.join(", ")),
+            text: format!("{}: {held}", self.words(&support.face)),
             lines: lines.map(line).collect(),
         })
     }
@@ -317,22 +302,8 @@ impl Place<'_> {
     /// None for a load of no size, and for one that has no place on the skin.
     fn load(&self, load: &Load) -> Option<SketchMark> {
         let face = load.place.as_deref().filter(|_| !matches!(load.kind, LoadKind::BodyForce(_)))?;
-        let vector = |vector: &[f64; 3]| {
-            let [x1, x2, x3] = vector.map(number);
-            format!("({x1}, {x2}, {x3})")
-        };
         let size = |vector: &[f64; 3]| dot(*vector, *vector).sqrt();
-        let words = match &load.kind {
-            LoadKind::Traction(traction) => {
-                format!("{} MPa, in all {} N", vector(traction), number(size(traction) * self.area(face)))
-            }
-            LoadKind::Pressure(pressure) => format!("pressure {} MPa", number(*pressure)),
-            LoadKind::Resultant { force, moment, .. } => {
-                format!("{} N with moment {} N mm", vector(force), vector(moment))
-            }
-            LoadKind::Formula(texts) => format!("traction ({}) MPa", texts.join(", ")),
-            LoadKind::BodyForce(_) => String::new(),
-        };
+        let words = scene_words::load(load, || self.area(face));
         let at = |(x, normal): &Spot| -> [f64; 3] {
             match &load.kind {
                 LoadKind::Traction(traction) => *traction,

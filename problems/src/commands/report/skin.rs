@@ -1,6 +1,7 @@
 //! The skin of a body as pictures show it.
 
-use contact::body::mesh::Mesh;
+use contact::body::mesh::{CellFace, Mesh};
+use std::collections::HashSet;
 
 /// The nodes of the skin, and its faces by their places: corners counterclockwise seen from outside.
 pub struct Skin {
@@ -10,11 +11,16 @@ pub struct Skin {
 
 impl Skin {
     pub fn new(mesh: &Mesh) -> Self {
-        let corners = |face| {
-            let (nodes, count) = mesh.face_with_corners(face);
+        Self::of(mesh, &mesh.skin())
+    }
+
+    /// A part of the skin.
+    pub fn of(mesh: &Mesh, faces: &[CellFace]) -> Self {
+        let corners = |face: &CellFace| {
+            let (nodes, count) = mesh.face_with_corners(*face);
             nodes.into_iter().take(count).collect::<Vec<u32>>()
         };
-        let faces: Vec<Vec<u32>> = mesh.skin().into_iter().map(corners).collect();
+        let faces: Vec<Vec<u32>> = faces.iter().map(corners).collect();
         let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -22,6 +28,17 @@ impl Skin {
         let faces = faces.iter().map(|face| face.iter().map(place).collect()).collect();
         Self { nodes, faces }
     }
+}
+
+/// The faces of the skin by their names; a face of several names counts for the first one, one without a name for "".
+pub fn faces_by_name(mesh: &Mesh) -> Vec<(String, Vec<CellFace>)> {
+    let mut rest: HashSet<CellFace> = mesh.skin().into_iter().collect();
+    let mut found: Vec<(String, Vec<CellFace>)> = Vec::new();
+    for (name, faces) in mesh.faces() {
+        found.push((name.clone(), faces.iter().copied().filter(|face| rest.remove(face)).collect()));
+    }
+    found.push((String::new(), mesh.skin().into_iter().filter(|face| rest.contains(face)).collect()));
+    found
 }
 
 /// Least and largest coordinates of some points along an axis.
