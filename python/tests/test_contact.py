@@ -261,3 +261,46 @@ def test_what_lists_of_bodies_do_not_take_is_refused():
     corners = [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
     with pytest.raises(ValueError, match="list of bodies"):
         contact.Scene.from_mesh(corners, [range(8)], {"head": [[4, 5, 6, 7]]}, SCENES / "stack.toml")
+
+
+def test_a_scene_is_shown_before_and_after_its_solve(tmp_path):
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    page = scene.show()
+    page.save(tmp_path / "scene.html")
+    assert (tmp_path / "scene.html").read_text(encoding="utf-8") == page.html
+    assert "nothing is solved" in page.html and 'class="space"' in page.html
+    frame = page._repr_html_()
+    assert frame.startswith("<iframe srcdoc=") and "<script" not in frame  # quoted for the attribute
+    solved = scene.show(scene.start - 0.01)
+    assert "In three dimensions" in solved.html and "peak contact pressure" in solved.html
+    with pytest.raises(ValueError, match="controls"):
+        scene.show([1.0])
+
+
+def test_a_mesh_gets_a_first_scene(tmp_path):
+    mesh = tmp_path / "lug.msh"
+    mesh.write_bytes((SCENES / "lug_tet10.msh").read_bytes())
+    path = contact.new_scene(mesh)
+    assert path == str(tmp_path / "lug.toml")
+    scene = contact.Scene.from_toml(path)
+    assert abs(scene.evaluate().total_force / 26000 - 1) < 1e-3
+    assert "nose" in scene.show().html
+    with pytest.raises(ValueError, match="exists"):
+        contact.new_scene(mesh)
+    with pytest.raises(ValueError, match="none.msh"):
+        contact.new_scene(tmp_path / "none.msh")
+
+
+@pytest.mark.parametrize("file", ["signorini.toml", "lug_tet10.toml"])
+def test_values_over_the_contact_nodes_are_drawn(file):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    state = contact.Scene.from_toml(SCENES / file).evaluate()
+    for values in ["pressures", "gaps", "status", "areas"]:
+        axes = state.plot(values)
+        drawn = axes.collections[0].get_array()
+        known = np.isfinite(np.asarray(getattr(state, values), dtype=float)) & (state.contact_nodes >= 0)
+        assert drawn.max() == np.asarray(getattr(state, values), dtype=float)[known].max()
+        matplotlib.pyplot.close(axes.figure)
+    with pytest.raises(ValueError, match="pressures, gaps"):
+        state.plot("stresses")

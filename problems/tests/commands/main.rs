@@ -20,6 +20,7 @@ mod certificates;
 mod compare;
 mod contact3d;
 mod export;
+mod export_mesh;
 mod facts;
 mod flat_foot;
 mod fuzz;

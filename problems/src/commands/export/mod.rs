@@ -64,27 +64,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     };
     let differences = run.filter(|_| options.friction_problem).map_or_else(Vec::new, |run| run.differences);
     problem.admissible.check_shape(&controls)?;
-    let written = controls::written(controls.as_slice(), Layout::of(&problem.scene))?;
-    let what = "the controls; --controls and --start-controls take the file";
-    let mut files = vec![OutputFile::text("controls.json", written, what)];
     let block = Block::of(&problem.scene);
-    match block {
-        Some(block) => files.extend(of_block(&problem, block, controls.as_slice(), options)?),
-        None => files.extend(of_mesh(&problem, controls.as_slice(), options)?),
-    }
-    if options.csv || options.is_free() {
-        files.push(change::table(&problem, controls.as_slice()));
-    }
-    let is_mesh = options.is_free() && block.is_none();
-    if options.msh || is_mesh {
-        files.extend(mesh::gmsh_files(&problem, controls.as_slice())?);
-    }
-    if options.vtu || is_mesh {
-        files.extend(mesh::vtk_files(&problem, controls.as_slice())?);
-    }
-    if options.friction_problem {
-        files.extend(friction::matrices(&problem, controls.as_slice())?);
-    }
+    let files = files(&problem, block, controls.as_slice(), options)?;
     // The folder is touched when all that it will hold is there.
     let path = arguments.files.out.as_deref().unwrap_or(Path::new(""));
     let bytes = files.iter().map(|file| file.content.len() as u64).sum();
@@ -109,6 +90,36 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
             None => folder.write(&file.name, &file.content),
         })
     })
+}
+
+/// All files that the options ask for.
+fn files(
+    problem: &ContactProblem,
+    block: Option<Block<'_>>,
+    controls: &[f64],
+    options: &ExportOptions,
+) -> Result<Vec<OutputFile>, Failure> {
+    let written = controls::written(controls, Layout::of(&problem.scene))?;
+    let what = "the controls; --controls and --start-controls take the file";
+    let mut files = vec![OutputFile::text("controls.json", written, what)];
+    match block {
+        Some(block) => files.extend(of_block(problem, block, controls, options)?),
+        None => files.extend(of_mesh(problem, controls, options)?),
+    }
+    if options.csv || options.is_free() {
+        files.push(change::table(problem, controls));
+    }
+    let is_mesh = options.is_free() && block.is_none();
+    if options.msh || is_mesh {
+        files.extend(mesh::gmsh_files(problem, controls)?);
+    }
+    if options.vtu || is_mesh {
+        files.extend(mesh::vtk_files(problem, controls)?);
+    }
+    if options.friction_problem {
+        files.extend(friction::matrices(problem, controls)?);
+    }
+    Ok(files)
 }
 
 /// The files of the shape of a block. Other bodies go with it as triangles: those that are no block with a plane as
