@@ -5,12 +5,10 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import puppeteer from "puppeteer-core";
+import { join } from "node:path";
+import { colours, opened } from "./browser_page.mjs";
 
 const [report, table, folder] = process.argv.slice(2);
-const MOST_MILLISECONDS = 3000;
 
 /// The lines of a table, by the names of its columns.
 function rows(path) {
@@ -21,44 +19,9 @@ function rows(path) {
   return lines.map((cells) => Object.fromEntries(head.map((name, column) => [name, cells[column]])));
 }
 
-const browser = await puppeteer.launch({
-  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: [
-    "--no-sandbox",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--ignore-gpu-blocklist",
-  ],
-});
+const { browser, page, figure, complaints, milliseconds } = await opened(report);
 try {
-  const page = await browser.newPage();
-  await page.setViewport({ width: 1100, height: 900 });
-  const complaints = [];
-  page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(message.text()));
-  page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on(
-    "request",
-    (request) => /^(file|data|blob):/.test(request.url()) || complaints.push(`loads ${request.url()}`),
-  );
-
-  // It opens in time.
-  const begun = performance.now();
-  await page.goto(pathToFileURL(resolve(report)).href);
-  const figure = await page.$("figure.space");
-  assert(figure, "the report has no view in three dimensions");
-  await figure.evaluate((own) => own.scrollIntoView());
-  const ready = () =>
-    document.querySelector("figure.space").dataset.ready ||
-    document.querySelector(".space-view").textContent.includes("cannot");
-  await page.waitForFunction(ready, { timeout: 20000 });
-  const milliseconds = performance.now() - begun;
   const told = () => page.$eval(".space-told", (output) => output.textContent);
-  assert(
-    !(await page.$eval(".space-view", (view) => view.textContent)).includes("cannot"),
-    await page.$eval(".space-view", (view) => view.textContent),
-  );
-  assert(milliseconds < MOST_MILLISECONDS, `open after ${milliseconds} ms`);
 
   const canvas = await page.$(".space-stage canvas");
   const shot = async (name) => {
@@ -69,17 +32,7 @@ try {
   };
 
   // The canvas shows more than its ground, and turning changes the picture.
-  const colours = () =>
-    page.evaluate(() => {
-      const { view } = document.querySelector("figure.space");
-      view.draw();
-      const gl = view.renderer.getContext();
-      const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
-      const pixels = new Uint8Array(4 * width * height);
-      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-      return new Set(new Uint32Array(pixels.buffer)).size;
-    });
-  const drawn = await colours();
+  const drawn = await colours(page);
   await shot("view");
   assert(drawn > 50, `the canvas shows ${drawn} colours: ${complaints}`);
   const before = await shot("view");
