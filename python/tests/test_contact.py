@@ -273,7 +273,7 @@ def test_a_scene_is_shown_before_and_after_its_solve(tmp_path):
     assert frame.startswith("<iframe srcdoc=") and "<script" not in frame  # quoted for the attribute
     solved = scene.show(scene.start - 0.01)
     assert "In three dimensions" in solved.html and "peak contact pressure" in solved.html
-    with pytest.raises(ValueError, match="controls"):
+    with pytest.raises(ValueError, match="heights has 1 entries, expected 36"):
         scene.show([1.0])
 
 
