@@ -28,7 +28,11 @@ pub fn load(
     case: &Case,
     (option, file): (&str, Option<&Path>),
 ) -> Result<Vector, SceneError> {
-    let place = file.map_or("surface.start", |_| option).to_owned();
+    let place = match (file, problem.scene.heights()) {
+        (Some(_), _) => option.to_owned(),
+        (None, Some(_)) => "surface.start".to_owned(),
+        (None, None) => format!("the start of the scene, where nothing is displaced ({option} FILE names another)"),
+    };
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
     let controls = match (file, &case.start) {
         (Some(file), _) => read(file, Layout::of(&problem.scene)).map_err(within)?,

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod composite;
+mod examples;
 mod headline;
 mod pins;
 mod stability;

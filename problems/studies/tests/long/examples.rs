@@ -1,0 +1,36 @@
+//! The worked examples of the tutorials are optimized to the numbers of their pages.
+
+use problems::commands::{Arguments, execute};
+use scene_file::SceneFile;
+use serde_json::Value;
+use std::path::Path;
+
+/// Relative difference allowed for the objective; the run may end elsewhere on other processors.
+const OBJECTIVE: f64 = 1e-3;
+
+fn optimized(scene: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{scene}.toml"));
+    let arguments = Arguments::try_parse_from(["contact3d", "optimize", "--json"]).unwrap();
+    let open = || Ok((SceneFile::read(&path)?, Some(path.clone())));
+    let run: Value = serde_json::from_str(&execute(open, &arguments).unwrap()).unwrap();
+    assert_eq!(run["termination"]["confirmed"], true, "{scene}: {}", run["termination"]);
+    let limits = run["limits"].as_array().unwrap();
+    // A limit is kept to 1e-6 of its bound.
+    assert!(
+        limits.iter().all(|limit| limit["violation"].as_f64().is_none_or(|over| over < 1e-2)),
+        "{scene}: {limits:?}"
+    );
+    run
+}
+
+fn reaches(scene: &str, objective: f64, most_evaluations: u64) {
+    let run = optimized(scene);
+    let found = run["objective"].as_f64().unwrap();
+    assert!((found / objective - 1.0).abs() < OBJECTIVE, "{scene}: {found} instead of {objective}");
+    assert!(run["evaluations"].as_u64() <= Some(most_evaluations), "{scene}: {}", run["evaluations"]);
+}
+
+#[test]
+fn the_crown_of_the_roller_is_proved() {
+    reaches("roller", 2597.905, 36);
+}

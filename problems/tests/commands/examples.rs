@@ -1,0 +1,31 @@
+//! The worked examples of the tutorials at their starts; their optima are in the second tier (studies, `long`).
+
+use serde_json::Value;
+use testset::kit::json;
+
+const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
+
+/// Relative difference that rounding and other processors may make.
+const ROUNDING: f64 = 1e-6;
+
+fn evaluated(scene: &str) -> Value {
+    let scene = format!("{}/scenes/{scene}.toml", env!("CARGO_MANIFEST_DIR"));
+    json(CONTACT, &[&scene, "evaluate", "--no-checks", "--json"])
+}
+
+fn close(what: &str, found: &Value, expected: f64) {
+    let found = found.as_f64().unwrap_or(f64::NAN);
+    assert!((found / expected - 1.0).abs() < ROUNDING, "{what}: {found} instead of {expected}");
+}
+
+/// docs/tutorial_roller.md: two meshes that do not match, two loads and a tilt.
+#[test]
+fn the_roller_has_the_peaks_of_its_page() {
+    let state = evaluated("roller");
+    close("objective", &state["objective"], 2_853.431_185_649_738);
+    for (case, peak) in state["cases"].as_array().unwrap().iter().zip([2101.14, 2339.43, 1144.54, 1426.72]) {
+        let found = case["peak_pressure"].as_f64().unwrap();
+        assert!((found - peak).abs() < 0.0051, "{}: {found} instead of {peak}", case["name"]);
+        assert!(case["residual"].as_f64() < Some(1e-9), "{}", case["residual"]);
+    }
+}
