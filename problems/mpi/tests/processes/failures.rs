@@ -13,6 +13,9 @@ const KINDS: [(&str, i32); 5] = [("panic", 101), ("kill", 137), ("exit", 3), ("m
 const RUN: [&str; 10] =
     ["--mesh", "4", "--solver", "newton", "--threads", "1", "--max-evaluations", "3", "--json", "--out"];
 
+/// Failures of an ordinary run of the test.
+const FEW: usize = 48;
+
 /// Lets one process fail; whether it did.
 fn fails(rank: usize, processes: usize, call: usize, (kind, status): (&str, i32), folder: &Path) -> bool {
     let scene = scene("signorini");
@@ -75,8 +78,10 @@ fn parcels_of_any_size_arrive() {
     }
 }
 
+/// FAILURES of the environment says how many.
 #[test]
-fn two_hundred_failures_end_all_processes() {
+fn failures_end_all_processes() {
+    let count = std::env::var("FAILURES").map_or(FEW, |count| count.parse().expect("FAILURES: a number"));
     // Most of their time is waiting for `mpirun`.
-    std::thread::scope(|scope| (1..=4).for_each(|seed| drop(scope.spawn(move || many(50, seed)))));
+    std::thread::scope(|scope| (1..=4).for_each(|seed| drop(scope.spawn(move || many(count / 4, seed)))));
 }
