@@ -34,3 +34,15 @@ fn reaches(scene: &str, objective: f64, most_evaluations: u64) {
 fn the_crown_of_the_roller_is_proved() {
     reaches("roller", 2597.905, 36);
 }
+
+/// The objective of the taper is a squared deviation near 0, of which few digits are of use.
+#[test]
+fn the_profile_of_the_taper_is_proved() {
+    let run = optimized("taper");
+    let found = ["objective", "peak_pressure"].map(|key| match &run[key] {
+        Value::Array(ends) => ends.last().and_then(Value::as_f64).unwrap(),
+        value => value.as_f64().unwrap(),
+    });
+    assert!((found[0] - 0.2147).abs() < 0.01 && (found[1] - 41.45).abs() < 0.1, "{found:?}");
+    assert!(run["evaluations"].as_u64() <= Some(40), "{}", run["evaluations"]);
+}
