@@ -1,0 +1,384 @@
+"""Solves a scene of one body of tetrahedra on a rigid seat with CalculiX as well, and compares the two results.
+
+    contact3d SCENE.toml evaluate --out STATE
+    python3 problems/tests/compare_calculix.py SCENE.toml STATE --work FOLDER [--case NAME] [--type MORTAR] ...
+
+STATE is the folder of the command above. FOLDER receives the input deck and the results of `ccx` (Debian: calculix-ccx). Needs
+meshio and numpy. Prints one line per quantity: this project, CalculiX, difference.
+
+Both programs get the same nodes, elements, material, supports and nodal forces. Nodal contact forces of CalculiX are
+∫Bᵀσ less the load, from the stresses at its integration points. Those of nodes in the middles of edges are shared between
+the two ends, so that the force at a corner is ∫p φ with its linear hat function φ, as in this project; pressures are
+forces over the same areas.
+"""
+
+import argparse
+import os
+import resource
+import subprocess
+import time
+import tomllib
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+# Local numbers of the nodes of the faces S1 to S4 of C3D10: three corners, then the middles of their edges.
+FACES = [(0, 1, 2, 4, 5, 6), (0, 3, 1, 7, 8, 4), (1, 3, 2, 8, 9, 5), (2, 3, 0, 9, 7, 6)]
+COMPONENTS = {"u1": 1, "u2": 2, "u3": 3}
+
+
+def read_scene(path, name):
+    """The scene with the changes of one load case, and the offset of the obstacle."""
+    scene = tomllib.loads(Path(path).read_text())
+    cases = {case["name"]: (case, f"shape_case_{number}") for number, case in enumerate(scene.get("case", []), 1)}
+    case, files = cases[name] if cases else ({}, "shape")
+    return scene, scene["body"] | case.get("body", {}), np.array(case.get("offset", [0.0] * 3)), files
+
+
+def read_mesh(path):
+    mesh = meshio.read(path)
+    cells = np.vstack([block.data for block in mesh.cells if block.type == "tetra10"])
+    number = np.full(len(mesh.points), -1)
+    used = np.unique(cells)
+    number[used] = np.arange(len(used))
+    groups = mesh.cell_data["gmsh:physical"]
+    faces = {}
+    for name, (tag, dimension) in mesh.field_data.items():
+        if dimension == 2:
+            faces[name] = number[np.vstack([block.data[group == tag] for block, group in zip(mesh.cells, groups) if block.type == "triangle6"])]
+    return mesh.points[used], number[cells], faces
+
+
+def triangle(points, places):
+    """Values of the six shape functions of a facet, and the vectors normal · dA, at places of its reference triangle."""
+    x, y = places[:, 0], places[:, 1]
+    z = 1 - x - y
+    values = np.stack([z * (2 * z - 1), x * (2 * x - 1), y * (2 * y - 1), 4 * z * x, 4 * x * y, 4 * y * z], axis=1)
+    zero = 0 * x
+    by_x = np.stack([1 - 4 * z, 4 * x - 1, zero, 4 * (z - x), 4 * y, -4 * y], axis=1)
+    by_y = np.stack([1 - 4 * z, zero, 4 * y - 1, -4 * x, 4 * x, 4 * (z - y)], axis=1)
+    return values, np.cross(np.einsum("qn,fni->fqi", by_x, points), np.einsum("qn,fni->fqi", by_y, points))
+
+
+# Six points on the triangle, exact for polynomials of degree 4.
+A, B = 0.445948490915965, 0.091576213509771
+PLACES = np.array([(A, A), (1 - 2 * A, A), (A, 1 - 2 * A), (B, B), (1 - 2 * B, B), (B, 1 - 2 * B)])
+WEIGHTS = np.repeat([0.223381589678011 / 2, 0.109951743655322 / 2], 3)
+
+
+def nodal_forces(points, faces, loads):
+    """Consistent nodal forces of tractions, pressures, and of forces and moments as tractions that are linear in the position."""
+    forces = np.zeros_like(points)
+    for load in loads:
+        facets = faces[load["face"]]
+        values, normals = triangle(points[facets], PLACES)
+        areas = np.linalg.norm(normals, axis=2)
+        if "pressure" in load:
+            field = -load["pressure"] * normals
+        elif "traction" in load:
+            field = areas[:, :, None] * np.array(load["traction"])
+        else:
+            at = np.einsum("qn,fni->fqi", values, points[facets])
+            weights = WEIGHTS * areas
+            centre = np.einsum("fq,fqi->i", weights, at) / weights.sum()
+            away = at - centre
+            second = np.einsum("fq,fqi,fqj->ij", weights, away, away)
+            total = np.array(load["force"])
+            moment = np.array(load.get("moment", [0.0] * 3)) + np.cross(np.array(load.get("point", centre)) - centre, total)
+            turn = np.linalg.solve(np.trace(second) * np.eye(3) - second, moment)
+            field = areas[:, :, None] * (total / weights.sum() + np.cross(turn, away))
+        np.add.at(forces, facets, np.einsum("q,qn,fqi->fni", WEIGHTS, values, field))
+    return forces
+
+
+def outwards(points, cells, faces):
+    """Facets in the order of the nodes of their cell, whose normals point outwards; and the place of each: cell, face."""
+    place = {}
+    for face, corners in enumerate(FACES):
+        for cell, nodes in enumerate(cells[:, corners]):
+            place[tuple(sorted(nodes[:3]))] = cell, face
+    # The faces S1 to S4 have their normals inwards for S1 = 1-2-3; the sign is that of a tetrahedron of positive volume.
+    found, places = {}, {}
+    for name, facets in faces.items():
+        places[name] = [place[tuple(sorted(nodes[:3]))] for nodes in facets]
+        found[name] = np.array([cells[cell][list(FACES[face])][[0, 2, 1, 5, 4, 3]] for cell, face in places[name]])
+    return found, places
+
+
+def seat(form, offset, points, facet):
+    """A layer of hexahedra of second order (C3D20) behind the obstacle, over the box around `points`: nodes, cells."""
+    offset = np.asarray(offset)
+    if form["form"] == "tilted-plane":
+        centre, normal = np.array(form["point"]) + offset, np.array(form["normal"], float)
+        normal /= np.linalg.norm(normal)
+        along = np.eye(3)[np.argmin(abs(normal))]
+        first = np.cross(normal, along)
+        first /= np.linalg.norm(first)
+        second = np.cross(normal, first)
+        local = np.stack([(points - centre) @ first, (points - centre) @ second], axis=1)
+
+        def place(a, b, depth):
+            return centre + np.multiply.outer(a, first) + np.multiply.outer(b, second) + np.multiply.outer(depth, normal)
+
+        scale, directions = np.ones(2), 1.0
+    elif form["form"] == "cylinder":
+        centre, axis = np.array(form["point"]) + offset, np.array(form["axis"], float)
+        axis /= np.linalg.norm(axis)
+        radius = form["radius"]
+        sign = 1.0 if form.get("side") == "inside" else -1.0
+        away = (points - centre) - np.multiply.outer((points - centre) @ axis, axis)
+        first = away.mean(axis=0)
+        first -= (first @ axis) * axis
+        first /= np.linalg.norm(first)
+        second = np.cross(axis, first)
+        local = np.stack([np.arctan2(away @ second, away @ first), (points - centre) @ axis], axis=1)
+
+        def place(a, b, depth):
+            r = radius + sign * depth
+            return centre + (r * np.cos(a))[..., None] * first + (r * np.sin(a))[..., None] * second + np.multiply.outer(b, axis)
+
+        scale = np.array([radius, 1.0])
+    else:
+        raise SystemExit(f"this script knows tilted-plane and cylinder, not {form['form']}")
+    low, high = local.min(axis=0), local.max(axis=0)
+    margin = 0.05 * (high - low)
+    low, high = low - margin, high + margin
+    counts = np.maximum(np.ceil((high - low) * scale / facet).astype(int), 1)
+    a, b, depth = np.meshgrid(*[np.linspace(low[i], high[i], 2 * counts[i] + 1) for i in (0, 1)], np.linspace(0, facet, 3), indexing="ij")
+    nodes = place(a, b, depth)
+    index = np.arange(a.size).reshape(a.shape)
+    # Corners below, corners above, middles below, above, upright: the order of C3D20.
+    order = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
+    order += [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2), (0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)]
+    cells = np.array([[index[2 * i + p, 2 * j + q, r] for p, q, r in order] for i in range(counts[0]) for j in range(counts[1])])
+    nodes = nodes.reshape(-1, 3)
+    edges = nodes[cells[:, [1, 3, 4]]] - nodes[cells[:, [0]]]
+    if np.linalg.det(edges)[0] < 0:
+        turned = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
+        cells = cells[:, turned]
+    used = np.unique(cells)
+    number = np.full(len(nodes), -1)
+    number[used] = np.arange(len(used))
+    return nodes[used], number[cells]
+
+
+def lines(numbers, per_line=12):
+    numbers = list(numbers)
+    return [", ".join(str(n) for n in numbers[i : i + per_line]) + ("," if i + per_line < len(numbers) else "") for i in range(0, len(numbers), per_line)]
+
+
+def write_deck(path, arguments, scene, body, points, cells, faces, places, forces, rigid):
+    material, contact = body["material"], scene["contact"]["face"]
+    count, kind = len(points), arguments.type
+    deck = ["*NODE, NSET=BODY"]
+    deck += [f"{i + 1}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(points)]
+    deck += ["*NODE, NSET=SEAT"]
+    deck += [f"{count + i + 1}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(rigid[0])]
+    deck += ["*ELEMENT, TYPE=C3D10, ELSET=BODY"]
+    deck += [line for i, cell in enumerate(cells) for line in lines([i + 1, *(cell + 1)], 16)]
+    deck += ["*ELEMENT, TYPE=C3D20, ELSET=SEAT"]
+    deck += [line for i, cell in enumerate(rigid[1]) for line in lines([len(cells) + i + 1, *(count + cell + 1)], 11)]
+    deck += ["*SURFACE, NAME=FOOT, TYPE=ELEMENT"]
+    deck += [f"{cell + 1}, S{face + 1}" for cell, face in places[contact]]
+    deck += ["*SURFACE, NAME=BED, TYPE=ELEMENT"]
+    deck += [f"{len(cells) + i + 1}, S1" for i in range(len(rigid[1]))]
+    deck += ["*MATERIAL, NAME=PART", "*ELASTIC", f"{material['young_modulus']}, {material['poisson_ratio']}"]
+    deck += ["*SOLID SECTION, ELSET=BODY, MATERIAL=PART", "*SOLID SECTION, ELSET=SEAT, MATERIAL=PART"]
+    stiffness = arguments.stiffness * material["young_modulus"]
+    deck += ["*SURFACE INTERACTION, NAME=LAW"]
+    if kind == "SURFACE TO SURFACE":
+        deck += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{stiffness:.6e}"]
+    else:
+        deck += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"]
+    if scene["friction"] > 0:
+        deck += ["*FRICTION", f"{scene['friction']}, {arguments.stick * stiffness:.6e}"]
+    deck += [f"*CONTACT PAIR, INTERACTION=LAW, TYPE={kind}", "FOOT, BED"]
+    deck += ["*BOUNDARY", "SEAT, 1, 3"]
+    for support in body["supports"]:
+        for node in np.unique(faces[support["face"]]):
+            deck += [f"{node + 1}, {COMPONENTS[part]}, {COMPONENTS[part]}" for part in support["held"]]
+    if arguments.tie_middles:
+        deck += tied_middles(faces, body, contact)
+    deck += [f"*STEP, INC={arguments.increments * 20}", "*STATIC" + (", DIRECT" if arguments.direct else "")]
+    deck += [f"{1 / arguments.increments}, 1."]
+    deck += ["*CLOAD"]
+    deck += [f"{node + 1}, {part + 1}, {forces[node, part]:.12e}" for node, part in zip(*np.nonzero(forces))]
+    deck += ["*NODE PRINT, NSET=BODY, FREQUENCY=10000", "U", "*EL PRINT, ELSET=BODY, FREQUENCY=10000", "S"]
+    deck += ["*NODE PRINT, NSET=SEAT, TOTALS=ONLY, FREQUENCY=10000", "RF"]
+    if kind == "SURFACE TO SURFACE":
+        deck += ["*CONTACT PRINT, SLAVE=FOOT, MASTER=BED, FREQUENCY=10000", "CF"]
+        deck += ["*CONTACT PRINT, FREQUENCY=10000", "CSTR"]
+    deck += ["*END STEP", ""]
+    path.write_text("\n".join(deck))
+
+
+def tied_middles(faces, body, contact):
+    """Equations that make the displacement of every middle node of the foot the mean of its two ends, as in this project."""
+    held = {(node, COMPONENTS[part]) for support in body["supports"] for node in np.unique(faces[support["face"]]) for part in support["held"]}
+    ends = {}
+    for nodes in faces[contact]:
+        for middle, (one, two) in zip(nodes[3:], [(nodes[0], nodes[1]), (nodes[1], nodes[2]), (nodes[2], nodes[0])]):
+            ends[middle] = one, two
+    deck = []
+    for middle, (one, two) in ends.items():
+        for part in (1, 2, 3):
+            if (middle, part) not in held:
+                deck += ["*EQUATION", "3", f"{middle + 1}, {part}, 1., {one + 1}, {part}, -0.5, {two + 1}, {part}, -0.5"]
+    return deck
+
+
+def run(deck, threads):
+    """Runs ccx: wall-clock seconds, processor seconds, peak memory in MB, number of iterations."""
+    many = {name: str(threads) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "CCX_NPROC_RESULTS", "CCX_NPROC_STIFFNESS")}
+    clock = time.time()
+    with open(deck.with_suffix(".log"), "w") as log:
+        code = subprocess.call(["ccx", "-i", deck.stem], cwd=deck.parent, stdout=log, stderr=log, env=os.environ | many)
+    seconds, used = time.time() - clock, resource.getrusage(resource.RUSAGE_CHILDREN)
+    if code or "Job finished" not in deck.with_suffix(".log").read_text():
+        raise SystemExit(f"ccx has failed ({code}): see {deck.with_suffix('.log')}")
+    # Columns of the file: step, increment, attempt, iterations.
+    iterations = sum(int(line.split()[3]) for line in deck.with_suffix(".sta").read_text().splitlines() if line.split()[0].isdigit())
+    return seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, iterations
+
+
+def tables(path):
+    """The tables of a .dat file by the begin of their headings; of those that are printed several times, the last."""
+    found, rows = {}, []
+    for line in path.read_text().splitlines():
+        words = line.split()
+        try:
+            row = [float(word) for word in words]
+        except ValueError:
+            rows = found[" ".join(words)] = []
+            continue
+        if row:
+            rows.append(row)
+    return lambda begin: np.array(next(rows for heading, rows in reversed(found.items()) if heading.startswith(begin)))
+
+
+# The integration points of C3D10 in the order of CalculiX.
+C, D = 0.138196601125011, 0.585410196624968
+INNER = np.array([(C, C, C), (D, C, C), (C, D, C), (C, C, D)])
+
+
+def inner_forces(points, cells, stresses):
+    """∫Bᵀσ per node, from σ (xx, yy, zz, xy, xz, yz) at the four integration points of every cell."""
+    x, y, z = INNER.T
+    w, zero = 1 - x - y - z, 0 * x
+    by = [
+        [1 - 4 * w, 4 * x - 1, zero, zero, 4 * (w - x), 4 * y, -4 * y, -4 * z, 4 * z, zero],
+        [1 - 4 * w, zero, 4 * y - 1, zero, -4 * x, 4 * x, 4 * (w - y), -4 * z, zero, 4 * z],
+        [1 - 4 * w, zero, zero, 4 * z - 1, -4 * x, zero, -4 * y, 4 * (w - z), 4 * x, 4 * y],
+    ]
+    slopes = np.stack([np.stack(rows, axis=1) for rows in by], axis=2)
+    jacobian = np.einsum("qnj,cni->cqij", slopes, points[cells])
+    slopes = np.einsum("qnj,cqji->cqni", slopes, np.linalg.inv(jacobian))
+    tensor = stresses[:, :, [[0, 3, 4], [3, 1, 5], [4, 5, 2]]]
+    forces = np.zeros_like(points)
+    np.add.at(forces, cells, np.einsum("cq,cqni,cqij->cnj", np.linalg.det(jacobian) / 24, slopes, tensor))
+    return forces
+
+
+def von_mises(s):
+    """From σ in any order that begins with xx, yy, zz."""
+    xx, yy, zz = s[..., 0], s[..., 1], s[..., 2]
+    return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (s[..., 3:] ** 2).sum(axis=-1))
+
+
+def at_corners(forces, facets):
+    """Forces of middle nodes shared between the ends of their edges."""
+    shared, done = forces.copy(), set()
+    for nodes in facets:
+        for middle, ends in zip(nodes[3:], [nodes[[0, 1]], nodes[[1, 2]], nodes[[2, 0]]]):
+            if middle not in done:
+                shared[ends] += forces[middle] / 2
+                done.add(middle)
+    return shared
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scene")
+    parser.add_argument("state")
+    parser.add_argument("--work", required=True)
+    parser.add_argument("--case")
+    parser.add_argument("--type", default="SURFACE TO SURFACE", help="of *CONTACT PAIR: SURFACE TO SURFACE, MORTAR, LINMORTAR")
+    parser.add_argument("--stiffness", type=float, default=50.0, help="normal stiffness over Young's modulus, 1/mm")
+    parser.add_argument("--stick", type=float, default=0.1, help="stick slope over the normal stiffness")
+    parser.add_argument("--facet", type=float, default=1.0, help="edge length of the seat, mm")
+    parser.add_argument("--increments", type=int, default=1)
+    parser.add_argument("--direct", action="store_true")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--tie-middles", action="store_true", help="middle nodes of the foot move with their ends, as in this project")
+    parser.add_argument("--reuse", action="store_true", help="read the results of an earlier run again")
+    arguments = parser.parse_args()
+    scene, body, offset, files = read_scene(arguments.scene, arguments.case)
+    points, cells, faces = read_mesh(Path(arguments.scene).parent / body["mesh"])
+    faces, places = outwards(points, cells, faces)
+    forces = nodal_forces(points, faces, body["loads"])
+    facets = faces[scene["contact"]["face"]]
+    deck = Path(arguments.work) / "deck.inp"
+    if not arguments.reuse:
+        deck.parent.mkdir(parents=True, exist_ok=True)
+        rigid = seat(scene["counter_surface"], offset, points[np.unique(facets)], arguments.facet)
+        write_deck(deck, arguments, scene, body, points, cells, faces, places, forces, rigid)
+        print(f"{len(points)} nodes, {len(cells)} cells; seat: {len(rigid[1])} cells; load {forces.sum(axis=0).round(3)} N")
+        seconds, processor, memory, iterations = run(deck, arguments.threads)
+        print(f"CalculiX: {seconds:.1f} s, {processor:.1f} s of processor time, {memory:.0f} MB, {iterations} iterations")
+
+    read = tables(deck.with_suffix(".dat"))
+    moved = read("displacements")[:, 1:]
+    stresses = read("stresses")[:, 2:].reshape(len(cells), 4, 6)
+    at_nodes = inner_forces(points, cells, stresses) - forces
+    free = np.ones(len(points), bool)
+    free[np.unique(facets)] = False
+    for support in body["supports"]:
+        free[np.unique(faces[support["face"]])] = False
+    print(f"equilibrium of the other nodes: {abs(at_nodes[free]).max() / abs(at_nodes[~free]).max():.1e} of the largest nodal force")
+
+    ours = meshio.read(Path(arguments.state) / "vtk" / f"{files}_bodies.vtu")
+    contact = meshio.read(Path(arguments.state) / "vtk" / f"{files}_contact.vtu")
+    assert abs(ours.points - points).max() < 1e-9
+    index = {tuple(point): number for number, point in enumerate(points)}
+    corners = np.array([index[tuple(point)] for point in contact.points])
+    data = contact.point_data
+    area, normal = data["area"].ravel(), data["normal"]
+    # Contact forces upon the body. A component that a support holds is the force of the support.
+    for support in body["supports"]:
+        for part in support["held"]:
+            at_nodes[np.unique(faces[support["face"]]), COMPONENTS[part] - 1] = 0
+    theirs = at_corners(at_nodes, facets)[corners]
+    pressure = -np.einsum("ni,ni->n", theirs, normal) / area
+    own = data["pressure"].ravel()
+    along = theirs + (pressure * area)[:, None] * normal
+    slides = -data["traction"] * area[:, None]
+
+    def line(name, one, two, unit):
+        print(f"{name:40} {one:12.6g} {two:12.6g} {unit:4} {100 * (two / one - 1):+8.2f} %")
+
+    def field(name, one, two, weight):
+        far = np.sqrt((weight * ((two - one).T ** 2)).sum() / (weight * (one.T**2)).sum())
+        print(f"{name:40} {'':12} {'':12} {'':4} {100 * far:8.2f} %")
+
+    line("normal force, sum over nodes", (own * area).sum(), (pressure * area).sum(), "N")
+    line("tangential force, length of the sum", np.linalg.norm(slides.sum(axis=0)), np.linalg.norm(along.sum(axis=0)), "N")
+    line("tangential force, sum of lengths", np.linalg.norm(slides, axis=1).sum(), np.linalg.norm(along, axis=1).sum(), "N")
+    line("peak pressure at a corner", own.max(), pressure.max(), "MPa")
+    if "SURFACE" in arguments.type:
+        line("peak pressure at an integration point", own.max(), read("contact stress")[:, -3].max(), "MPa")
+    at = np.argmax(own)
+    line("pressure at the node of the peak", own[at], pressure[at], "MPa")
+    line("least pressure at a corner, over the peak", 1, pressure.min() / own.max(), "")
+    field("pressures, relative L2 difference", own, pressure, area)
+    field("friction, relative L2 difference", slides / area[:, None], along / area[:, None], area)
+    centres = ours.cell_data["von_mises"][0].ravel(), von_mises(stresses.mean(axis=1))
+    line("largest von Mises stress at a centre", centres[0].max(), centres[1].max(), "MPa")
+    field("von Mises stresses, relative difference", *centres, 1.0)
+    shift = ours.point_data["displacement"]
+    loaded = np.argmax(np.linalg.norm(shift, axis=1))
+    line("largest displacement", np.linalg.norm(shift[loaded]), np.linalg.norm(moved[loaded]), "mm")
+    field("displacements, relative difference", shift, moved, 1.0)
+
+
+main()
