@@ -1,4 +1,4 @@
-"""Solves a scene of one body of tetrahedra on a rigid seat by another program, and compares the result with that of this project.
+"""Solves a scene of one body of tetrahedra on a rigid cylinder by another program, and compares the result with that of this project.
 
     contact3d SCENE.toml evaluate --out STATE
     OMP_NUM_THREADS=1 python3 problems/tests/compare_programs.py SCENE.toml STATE --work FOLDER --program calculix [--case NAME]
@@ -48,19 +48,21 @@ def read_mesh(path):
     faces = {}
     for name, (tag, dimension) in mesh.field_data.items():
         if dimension == 2:
-            faces[name] = number[np.vstack([block.data[group == tag] for block, group in zip(mesh.cells, groups) if block.type == "triangle6"])]
+            facets = [block.data[group == tag] for block, group in zip(mesh.cells, groups) if block.type == "triangle6"]
+            faces[name] = number[np.vstack(facets)]
     return mesh.points[used], number[cells], faces
 
 
 def triangle(points, places):
-    """Values of the six shape functions of a facet, and the vectors normal · dA, at places of its reference triangle."""
+    """Values of the six shape functions and areas per area of the reference triangle, of all facets at its `places`."""
     x, y = places[:, 0], places[:, 1]
     z = 1 - x - y
     values = np.stack([z * (2 * z - 1), x * (2 * x - 1), y * (2 * y - 1), 4 * z * x, 4 * x * y, 4 * y * z], axis=1)
     zero = 0 * x
     by_x = np.stack([1 - 4 * z, 4 * x - 1, zero, 4 * (z - x), 4 * y, -4 * y], axis=1)
     by_y = np.stack([1 - 4 * z, zero, 4 * y - 1, -4 * x, 4 * x, 4 * (z - y)], axis=1)
-    return values, np.cross(np.einsum("qn,fni->fqi", by_x, points), np.einsum("qn,fni->fqi", by_y, points))
+    normals = np.cross(np.einsum("qn,fni->fqi", by_x, points), np.einsum("qn,fni->fqi", by_y, points))
+    return values, np.linalg.norm(normals, axis=2)
 
 
 # Six points on the triangle, exact for polynomials of degree 4.
@@ -70,15 +72,12 @@ WEIGHTS = np.repeat([0.223381589678011 / 2, 0.109951743655322 / 2], 3)
 
 
 def nodal_forces(points, faces, loads):
-    """Consistent nodal forces of tractions, pressures, and of forces and moments as tractions that are linear in the position."""
+    """Consistent nodal forces of tractions, and of forces and moments as tractions that are linear in the position."""
     forces = np.zeros_like(points)
     for load in loads:
         facets = faces[load["face"]]
-        values, normals = triangle(points[facets], PLACES)
-        areas = np.linalg.norm(normals, axis=2)
-        if "pressure" in load:
-            field = -load["pressure"] * normals
-        elif "traction" in load:
+        values, areas = triangle(points[facets], PLACES)
+        if "traction" in load:
             field = areas[:, :, None] * np.array(load["traction"])
         else:
             at = np.einsum("qn,fni->fqi", values, points[facets])
@@ -94,80 +93,49 @@ def nodal_forces(points, faces, loads):
     return forces
 
 
-def outwards(points, cells, faces):
-    """Facets in the order of the nodes of their cell, whose normals point outwards; and the place of each: cell, face."""
+def places_of(cells, faces):
+    """The cell, and the number of the face of this cell, of every facet."""
     place = {}
-    for face, corners in enumerate(FACES):
-        for cell, nodes in enumerate(cells[:, corners]):
-            place[tuple(sorted(nodes[:3]))] = cell, face
-    # The faces S1 to S4 have their normals inwards for S1 = 1-2-3; the sign is that of a tetrahedron of positive volume.
-    found, places = {}, {}
-    for name, facets in faces.items():
-        places[name] = [place[tuple(sorted(nodes[:3]))] for nodes in facets]
-        found[name] = np.array([cells[cell][list(FACES[face])][[0, 2, 1, 5, 4, 3]] for cell, face in places[name]])
-    return found, places
+    for face, nodes in enumerate(FACES):
+        for cell, corners in enumerate(np.sort(cells[:, nodes[:3]])):
+            place[tuple(corners)] = cell, face
+    return {name: [place[tuple(np.sort(nodes[:3]))] for nodes in facets] for name, facets in faces.items()}
 
 
-def seat(form, offset, points, facet):
-    """A layer of hexahedra of second order (C3D20) behind the obstacle, over the box around `points`: nodes, cells."""
-    offset = np.asarray(offset)
-    if form["form"] == "tilted-plane":
-        centre, normal = np.array(form["point"]) + offset, np.array(form["normal"], float)
-        normal /= np.linalg.norm(normal)
-        along = np.eye(3)[np.argmin(abs(normal))]
-        first = np.cross(normal, along)
-        first /= np.linalg.norm(first)
-        second = np.cross(normal, first)
-        local = np.stack([(points - centre) @ first, (points - centre) @ second], axis=1)
-
-        def place(a, b, depth):
-            return centre + np.multiply.outer(a, first) + np.multiply.outer(b, second) + np.multiply.outer(depth, normal)
-
-        scale, directions = np.ones(2), 1.0
-    elif form["form"] == "cylinder":
-        centre, axis = np.array(form["point"]) + offset, np.array(form["axis"], float)
-        axis /= np.linalg.norm(axis)
-        radius = form["radius"]
-        sign = 1.0 if form.get("side") == "inside" else -1.0
-        away = (points - centre) - np.multiply.outer((points - centre) @ axis, axis)
-        first = away.mean(axis=0)
-        first -= (first @ axis) * axis
-        first /= np.linalg.norm(first)
-        second = np.cross(axis, first)
-        local = np.stack([np.arctan2(away @ second, away @ first), (points - centre) @ axis], axis=1)
-
-        def place(a, b, depth):
-            r = radius + sign * depth
-            return centre + (r * np.cos(a))[..., None] * first + (r * np.sin(a))[..., None] * second + np.multiply.outer(b, axis)
-
-        scale = np.array([radius, 1.0])
-    else:
-        raise SystemExit(f"this script knows tilted-plane and cylinder, not {form['form']}")
+def seat(cylinder, offset, points, facet):
+    """A layer of hexahedra of second order (C3D20) behind the cylinder, over the box around `points`: nodes, cells."""
+    centre, axis, radius = np.array(cylinder["point"]) + offset, np.array(cylinder["axis"]), cylinder["radius"]
+    axis /= np.linalg.norm(axis)
+    sign = 1 if cylinder.get("side") == "inside" else -1
+    away = points - centre
+    away -= np.outer(away @ axis, axis)
+    first = away.mean(axis=0)
+    first /= np.linalg.norm(first)
+    second = np.cross(axis, first)
+    local = np.stack([np.arctan2(away @ second, away @ first), (points - centre) @ axis], axis=1)
     low, high = local.min(axis=0), local.max(axis=0)
-    margin = 0.05 * (high - low)
-    low, high = low - margin, high + margin
-    counts = np.maximum(np.ceil((high - low) * scale / facet).astype(int), 1)
-    a, b, depth = np.meshgrid(*[np.linspace(low[i], high[i], 2 * counts[i] + 1) for i in (0, 1)], np.linspace(0, facet, 3), indexing="ij")
-    nodes = place(a, b, depth)
-    index = np.arange(a.size).reshape(a.shape)
-    # Corners below, corners above, middles below, above, upright: the order of C3D20.
-    order = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
-    order += [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2), (0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)]
-    cells = np.array([[index[2 * i + p, 2 * j + q, r] for p, q, r in order] for i in range(counts[0]) for j in range(counts[1])])
-    nodes = nodes.reshape(-1, 3)
-    edges = nodes[cells[:, [1, 3, 4]]] - nodes[cells[:, [0]]]
-    if np.linalg.det(edges)[0] < 0:
-        turned = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
-        cells = cells[:, turned]
-    used = np.unique(cells)
-    number = np.full(len(nodes), -1)
-    number[used] = np.arange(len(used))
-    return nodes[used], number[cells]
+    low, high = low - 0.05 * (high - low), high + 0.05 * (high - low)
+    counts = np.ceil((high - low) * [radius, 1] / facet).astype(int)
+    along = [np.linspace(low[i], high[i], 2 * counts[i] + 1) for i in (0, 1)]
+    angle, height, depth = np.meshgrid(*along, np.linspace(0, facet, 3), indexing="ij")
+    r = (radius + sign * depth)[..., None]
+    nodes = centre + r * np.cos(angle)[..., None] * first + r * np.sin(angle)[..., None] * second + height[..., None] * axis
+    nodes, index = nodes.reshape(-1, 3), np.arange(angle.size).reshape(angle.shape)
+    # C3D20: corners at depth 0, corners behind, middles of edges at depth 0, behind, and between.
+    corners, middles = [(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 0), (2, 1), (1, 2), (0, 1)]
+    if sign < 0:
+        corners, middles = [corners[i] for i in (0, 3, 2, 1)], middles[::-1]
+    order = [(*place, z) for places, z in [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)] for place in places]
+    cells = [[index[2 * i + p, 2 * j + q, z] for p, q, z in order] for i in range(counts[0]) for j in range(counts[1])]
+    used, cells = np.unique(cells, return_inverse=True)
+    return nodes[used], cells.reshape(-1, 20)
 
 
-def lines(numbers, per_line=12):
-    numbers = list(numbers)
-    return [", ".join(str(n) for n in numbers[i : i + per_line]) + ("," if i + per_line < len(numbers) else "") for i in range(0, len(numbers), per_line)]
+def lines(numbers, per_line):
+    """A list of numbers on several lines, each of which but the last ends with a comma."""
+    words = [str(number) for number in numbers]
+    parts = [", ".join(words[i : i + per_line]) for i in range(0, len(words), per_line)]
+    return [part + "," for part in parts[:-1]] + parts[-1:]
 
 
 def write_deck(path, arguments, scene, body, points, cells, faces, places, forces, rigid):
@@ -208,7 +176,9 @@ def write_deck(path, arguments, scene, body, points, cells, faces, places, force
 
 def tied_middles(faces, body, contact):
     """Equations that make the displacement of every middle node of the foot the mean of its two ends, as in this project."""
-    held = {(node, COMPONENTS[part]) for support in body["supports"] for node in np.unique(faces[support["face"]]) for part in support["held"]}
+    held = set()
+    for support in body["supports"]:
+        held |= {(node, COMPONENTS[part]) for node in faces[support["face"]].ravel() for part in support["held"]}
     ends = {}
     for nodes in faces[contact]:
         for middle, (one, two) in zip(nodes[3:], [(nodes[0], nodes[1]), (nodes[1], nodes[2]), (nodes[2], nodes[0])]):
@@ -390,7 +360,7 @@ def main():
     arguments = parser.parse_args()
     scene, body, offset, files = read_scene(arguments.scene, arguments.case)
     points, cells, faces = read_mesh(Path(arguments.scene).parent / body["mesh"])
-    faces, places = outwards(points, cells, faces)
+    places = places_of(cells, faces)
     forces = nodal_forces(points, faces, body["loads"])
     facets = faces[scene["contact"]["face"]]
     Path(arguments.work).mkdir(parents=True, exist_ok=True)
