@@ -46,7 +46,7 @@ def name_of(tag):
         return "stop"
     if high[2] < 1e-3 and low[0] < x0 + 1e-3 and high[0] > x1 - 1e-3:
         return "seat"
-    if gmsh.model.getType(2, tag) == "Cylinder" and high[0] < EYE + 1e-3 and low[0] > -EYE - 1e-3 and high[2] < HEIGHT + 1e-3:
+    if low[0] > -EYE - 1e-3 and high[0] < EYE + 1e-3 and high[2] < HEIGHT + 1e-3:
         return "eye"
     return "free"
 
@@ -75,7 +75,7 @@ def main(size, file):
     gmsh.model.mesh.setOrder(2)
     gmsh.option.setNumber("Mesh.Binary", 1)
     gmsh.write(file)
-    print(file, len(gmsh.model.mesh.getNodes()[0]), "nodes", {k: len(v) for k, v in faces.items()})
+    print(file, len(gmsh.model.mesh.getNodes()[0]), "nodes")
     gmsh.finalize()
 
 
