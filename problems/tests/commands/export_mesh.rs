@@ -5,9 +5,21 @@ use testset::kit::{self, text};
 
 const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
 
-/// The lug moved up by 0.1 mm as a whole: its files agree with each other, with the nose, a cylinder, and with the top.
 #[test]
 fn the_change_of_a_mesh_is_what_lies_between_the_shapes() {
+    raised("false");
+}
+
+/// Supports do not hold the nodes in the middles of the edges of the nose, which contact ties to their ends.
+#[test]
+fn nodes_of_the_contact_face_move_where_supports_hold_others() {
+    raised("true");
+}
+
+/// The lug moved up by 0.1 mm as a whole: its files agree with each other, with the nose, a cylinder, and with the top.
+/// `hold`: whether supports, which hold the wall along x1 and x2, hold nodes in the shape too.
+fn raised(hold: &str) {
+    let hold = format!("lattice.hold_supports={hold}");
     let scene = format!("{}/scenes/lug_tet10.toml", env!("CARGO_MANIFEST_DIR"));
     let folder = kit::scratch();
     let count =
@@ -17,7 +29,7 @@ fn the_change_of_a_mesh_is_what_lies_between_the_shapes() {
     let file = folder.path().join("controls.json");
     std::fs::write(&file, json!(controls).to_string()).unwrap();
     let out = folder.path().join("shape");
-    let options = ["export", "--controls", text(&file), "--out", text(&out), "--json"];
+    let options = ["export", "--controls", text(&file), "--set", &hold, "--out", text(&out), "--json"];
     let printed = kit::json(CONTACT, &[&[scene.as_str()], &options[..]].concat());
     let names: Vec<&str> =
         printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
@@ -36,6 +48,8 @@ fn the_change_of_a_mesh_is_what_lies_between_the_shapes() {
     let mut largest = 0.0_f64;
     for row in &nose {
         let (from, normal, amount, to) = (&row[1..4], &row[4..7], row[7], &row[8..11]);
+        let moved: [f64; 3] = std::array::from_fn(|axis| to[axis] - from[axis]);
+        assert!(moved[0] == 0.0 && moved[1] == 0.0 && (moved[2] - 0.1).abs() < 1e-12, "{row:?}");
         // The nose is a cylinder of radius 60 mm about (0, 0, 60): its normal points away from its axis.
         let radius = [from[0], from[2] - 60.0].map(|part| part / 60.0);
         assert!((normal[0] - radius[0]).abs() < 0.08 && (normal[2] - radius[1]).abs() < 0.08, "{row:?}");

@@ -66,9 +66,11 @@ impl Body {
     /// The orthonormal directions in which supports hold a node; all for a tied node, which has displacements against
     /// its ends alone.
     pub fn held(&self, node: u32) -> &[[f64; 3]] {
-        if self.solid.ends_of(node).is_some() {
-            return &AXES;
-        }
+        if self.solid.ends_of(node).is_some() { &AXES } else { self.supported(node) }
+    }
+
+    /// The orthonormal directions in which supports hold a node, tied or not: those in which a shape does not move it.
+    pub fn supported(&self, node: u32) -> &[[f64; 3]] {
         self.held.get(&node).map_or(&[], Directions::held)
     }
 

@@ -341,7 +341,7 @@ fn bodies(scene: &Scene) -> Result<Vec<Body>, SceneError> {
 fn maps(scene: &Scene, bodies: &[Body]) -> Result<Vec<BodyMap>, SceneError> {
     let map = |(scene, body): (&crate::scene::BodyScene, &Body)| match (&scene.shape, &scene.geometry) {
         (None, _) => Ok(BodyMap { base: body.mesh.nodes().to_vec(), controls: 0, rows: Vec::new() }),
-        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, |node| body.held(node)),
+        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, |node| body.supported(node)),
         (Some(ShapeScene::Heights(heights)), Geometry::Block(block)) => {
             Ok(height_map(&heights.surface()?, block, heights.face))
         }
