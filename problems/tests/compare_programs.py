@@ -1,4 +1,4 @@
-"""Solves a scene of one body of tetrahedra on a rigid cylinder by another program, and compares the result with that of this project.
+"""Solves a scene of one body of tetrahedra on a rigid cylinder by another program, and compares the two results.
 
     contact3d SCENE.toml evaluate --out STATE
     OMP_NUM_THREADS=1 python3 problems/tests/compare_programs.py SCENE.toml STATE --work FOLDER --program calculix [--case NAME]
@@ -125,7 +125,8 @@ def seat(cylinder, offset, points, facet):
     corners, middles = [(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 0), (2, 1), (1, 2), (0, 1)]
     if sign < 0:
         corners, middles = [corners[i] for i in (0, 3, 2, 1)], middles[::-1]
-    order = [(*place, z) for places, z in [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)] for place in places]
+    layers = [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)]
+    order = [(*place, z) for places, z in layers for place in places]
     cells = [[index[2 * i + p, 2 * j + q, z] for p, q, z in order] for i in range(counts[0]) for j in range(counts[1])]
     used, cells = np.unique(cells, return_inverse=True)
     return nodes[used], cells.reshape(-1, 20)
@@ -284,7 +285,8 @@ def run_getfem(scene, body, offset, points, cells, places, forces):
     assert converged
     moved = np.zeros_like(points)
     moved[nodes] = model.variable("u").reshape(-1, 3)
-    return {"moved": moved, "iterations": iterations, "peak": np.linalg.norm(model.variable("stress").reshape(-1, 3), axis=1).max()}
+    peak = np.linalg.norm(model.variable("stress").reshape(-1, 3), axis=1).max()
+    return {"moved": moved, "iterations": iterations, "peak": peak}
 
 
 def tables(path):
@@ -378,7 +380,8 @@ def main():
         free[held] = False
         for part in support["held"]:
             at_nodes[held, COMPONENTS[part] - 1] = 0
-    print(f"largest force on a node without contact and support: {abs(at_nodes[free]).max() / abs(at_nodes).max():.1e} of the largest one")
+    rest = abs(at_nodes[free]).max() / abs(at_nodes).max()
+    print(f"largest force on a node without contact and support: {rest:.1e} of the largest one")
     ours = meshio.read(Path(arguments.state) / "vtk" / f"{files}_bodies.vtu")
     contact = meshio.read(Path(arguments.state) / "vtk" / f"{files}_contact.vtu")
     assert abs(ours.points - points).max() < 1e-9
