@@ -18,6 +18,20 @@ fn close(what: &str, found: &Value, expected: f64) {
     assert!((found / expected - 1.0).abs() < ROUNDING, "{what}: {found} instead of {expected}");
 }
 
+/// docs/tutorial_bracket.md: three load cases, of which one exceeds the stress limit at the start.
+#[test]
+fn the_bracket_has_the_start_of_its_page() {
+    let state = evaluated("bracket");
+    close("objective", &state["objective"], 92_890_854_347.919_8);
+    let expected = [(136.569_510, 100.792_417), (205.562_950, 185.432_929), (146.385_621, 104.413_825)];
+    for (case, (peak, stress)) in state["cases"].as_array().unwrap().iter().zip(expected) {
+        close("peak", &case["peak_pressure"], peak);
+        let limit = state["limits"].as_array().unwrap().iter().find(|limit| limit["case"] == case["name"]).unwrap();
+        close("stress", &limit["end"], stress);
+        assert_eq!(limit["violation"].as_f64() > Some(0.0), case["name"] == "forward", "{limit}");
+    }
+}
+
 /// docs/tutorial_roller.md: two meshes that do not match, two loads and a tilt.
 #[test]
 fn the_roller_has_the_peaks_of_its_page() {
