@@ -100,7 +100,14 @@ fn a_certificate_over_cases_is_computed_again_and_a_run_goes_on() {
     let scene = scene(folder.path(), "[[limit]]\nquantity = \"peak-pressure\"\nat_most = 9000.0\ncase = \"still\"\n");
     let out = folder.path().join("out");
     let options = ["--single", "--mesh", "4", "--out", text(&out), "--json"];
-    json(contact3d(), &[&[scene.as_str(), "--max-evaluations", "3"], &options[..]].concat());
+    let found = json(contact3d(), &[&[scene.as_str(), "--max-evaluations", "3"], &options[..]].concat());
+    // A column of the table of the result is a shape in a case.
+    let table: Value = serde_json::from_str(&std::fs::read_to_string(out.join("key_numbers.json")).unwrap()).unwrap();
+    for (row, key) in [(0, "peak_pressure"), (1, "weighted_measure")] {
+        for case in 0..3 {
+            assert_eq!(table["rows"][row]["values"][3 + case], found["cases"][case][key], "{key} of case {case}");
+        }
+    }
     for file in ["pressure_optimal_case_1.csv", "pressure_optimal_case_3.csv", "report.html"] {
         assert!(out.join(file).exists(), "{file}");
     }

@@ -1,6 +1,7 @@
 //! The key numbers of shapes, side by side with their change.
 
 use crate::commands::facts::{Fact, Group};
+use crate::commands::numbers::raised;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::scene_words;
 use crate::commands::shape_facts;
@@ -17,8 +18,17 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
         Fact::row(key, quantity, seen.iter().map(|(shape, fields)| value(shape, fields).into()).collect(), unit)
     };
     let area = |fields: &Fields| fields.contact.area.iter().sum::<f64>();
-    let mut facts = vec![shape_facts::peak_pressure(&solved)];
-    facts.extend(shape_facts::objective(objective, &solved));
+    let mut facts = vec![row("peak_pressure", "peak contact pressure", "MPa", &|shape, _| {
+        shape.solved.peak_of(objective, shape.case)
+    })];
+    if objective.cases().count() == 1 {
+        facts.extend(shape_facts::objective(objective, &solved));
+    } else {
+        let unit = raised(&objective.unit());
+        facts.push(row("objective", "measure of the case, times its weight", &unit, &|shape, _| {
+            objective.weighted_values(&shape.solved.states)[shape.case]
+        }));
+    }
     facts.extend([
         row("mean_pressure", "mean pressure over the whole contact surface", "MPa", &|shape, fields| {
             shape.state().forces.total_normal_force() / area(fields)
