@@ -48,12 +48,12 @@ fn the_roller_has_the_peaks_of_its_page() {
 #[test]
 fn the_taper_balances_the_force_that_presses_it() {
     let state = evaluated("taper");
-    close("objective", &state["objective"], 1927.186_888_1);
+    close("objective", &state["objective"], 1_927.186_888_1);
     close("peak", &state["peak_pressure"], 258.505_057_4);
     // Half the angle of the bore: half of 5°40′, and 2′ more.
     let half = (2.0_f64 + 52.0 / 60.0).to_radians();
     let force = 333.333_333_33 / (half.sin() + 0.15 * half.cos());
     let found = state["total_normal_force"].as_f64().unwrap();
     assert!((found / force - 1.0).abs() < 5e-3, "{found} instead of {force}");
-    close("normal force", &state["total_normal_force"], 1672.988_909_8);
+    close("normal force", &state["total_normal_force"], 1_672.988_909_8);
 }
