@@ -13,22 +13,11 @@ use contact::fields::Fields;
 pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Group {
     let seen: Vec<(&ShownShape<'_>, &Fields)> =
         shapes.iter().filter_map(|shape| Some((shape, shape.fields.as_ref()?))).collect();
-    let solved: Vec<_> = seen.iter().map(|(shape, _)| shape.solved).collect();
-    let row = |key, quantity: &str, unit: &str, value: &dyn Fn(&ShownShape<'_>, &Fields) -> f64| {
+    let row = |key: &'static str, quantity: &str, unit: &str, value: &dyn Fn(&ShownShape<'_>, &Fields) -> f64| {
         Fact::row(key, quantity, seen.iter().map(|(shape, fields)| value(shape, fields).into()).collect(), unit)
     };
     let area = |fields: &Fields| fields.contact.area.iter().sum::<f64>();
-    let mut facts = vec![row("peak_pressure", "peak contact pressure", "MPa", &|shape, _| {
-        shape.solved.peak_of(objective, shape.case)
-    })];
-    if objective.cases().count() == 1 {
-        facts.extend(shape_facts::objective(objective, &solved));
-    } else {
-        let unit = raised(&objective.unit());
-        facts.push(row("objective", "measure of the case, times its weight", &unit, &|shape, _| {
-            objective.weighted_values(&shape.solved.states)[shape.case]
-        }));
-    }
+    let mut facts = measures(objective, &seen, &row);
     facts.extend([
         row("mean_pressure", "mean pressure over the whole contact surface", "MPa", &|shape, fields| {
             shape.state().forces.total_normal_force() / area(fields)
@@ -75,6 +64,26 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
     }
     let columns = seen.iter().map(|(shape, _)| shape.label.clone()).collect();
     Group { title: "Result", columns, facts, words: String::new() }
+}
+
+/// A row over shapes by what a shape and its fields say.
+type Row<'r> = dyn Fn(&'static str, &str, &str, &dyn Fn(&ShownShape<'_>, &Fields) -> f64) -> Fact + 'r;
+
+/// Peak pressure and objective; with several load cases those of the case.
+fn measures(objective: &ContactObjective, seen: &[(&ShownShape<'_>, &Fields)], row: &Row<'_>) -> Vec<Fact> {
+    let peak =
+        row("peak_pressure", "peak contact pressure", "MPa", &|shape, _| shape.solved.peak_of(objective, shape.case));
+    let mut facts = vec![peak];
+    if objective.cases().count() == 1 {
+        let solved: Vec<_> = seen.iter().map(|(shape, _)| shape.solved).collect();
+        facts.extend(shape_facts::objective(objective, &solved));
+    } else {
+        let unit = raised(&objective.unit());
+        facts.push(row("objective", "measure of the case, times its weight", &unit, &|shape, _| {
+            objective.weighted_values(&shape.solved.states)[shape.case]
+        }));
+    }
+    facts
 }
 
 /// The largest of some values.
