@@ -27,6 +27,12 @@ fn read(folder: &Path, name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap()
 }
 
+/// A page without its scripts, whose packed bytes are letters by chance.
+fn words(page: &str) -> String {
+    let parts = page.split("<script");
+    parts.map(|part| part.split_once("</script>").map_or(part, |(_, rest)| rest)).collect()
+}
+
 /// A body that does not reach its counterpart: its objective is zero at every shape.
 fn idle(folder: &Path) -> String {
     let file = folder.join("nocontact.toml");
@@ -117,7 +123,7 @@ fn a_run_that_changes_nothing_says_so() {
     let (file, out) = (idle(scratch.path()), scratch.path().join("run"));
     let told = printed(CONTACT, &[&file, "--max-evaluations", "3", "--out", text(&out)]);
     assert!(told.lines().next().unwrap().contains("no better shape was found than the start"), "{told}");
-    let page = read(&out, "report.html");
+    let page = words(&read(&out, "report.html"));
     for wrong in ["times less", "optimized shape", "NaN"] {
         assert!(!told.contains(wrong) && !page.contains(wrong), "{wrong}");
     }
