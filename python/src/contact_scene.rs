@@ -148,7 +148,7 @@ impl ContactScene {
         let controls = convert::vector(controls, "controls", Some(self.case.scene.control_count()))?;
         let objective = self.objective(py)?;
         objective.solver().problem().admissible.check_shape(&controls).map_err(shape)?;
-        let start = Vector::from_vec(self.case.start.clone().unwrap_or_else(|| self.case.scene.start()));
+        let start = Vector::from_vec(self.case.start_controls());
         let failure = Failure::default();
         let watch = failure.clone();
         let pages = || solved_page(objective, &[("start", &start), ("shape", &controls)]);
@@ -181,8 +181,7 @@ impl ContactScene {
     /// Controls at the start, mm.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let start = self.case.start.clone().unwrap_or_else(|| self.case.scene.start());
-        convert::shaped(py, start, &self.control_shape())
+        convert::shaped(py, self.case.start_controls(), &self.control_shape())
     }
 
     /// Θ, its subgradient, and the state at controls in row-major order; with its fields and warnings if asked for.

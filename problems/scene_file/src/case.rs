@@ -124,6 +124,11 @@ impl Case {
         })
     }
 
+    /// The controls that the case starts from, mm.
+    pub fn start_controls(&self) -> Vec<f64> {
+        self.start.clone().unwrap_or_else(|| self.scene.start())
+    }
+
     /// What is minimised, on the mesh of a problem.
     ///
     /// # Errors

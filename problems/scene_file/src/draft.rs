@@ -7,7 +7,7 @@
 
 use crate::UnitName;
 use crate::mesh_file;
-use contact::body::mesh::{CellFace, Mesh};
+use contact::body::mesh::{CellFace, Mesh, bounding_box};
 use contact::error::SceneError;
 use std::fmt::Write;
 use std::path::Path;
@@ -59,7 +59,7 @@ pub fn draft(file: &Path) -> Result<String, SceneError> {
     let read = mesh_file::read(file, UnitName::Mm)?;
     let longest = sides(&read.mesh).into_iter().fold(0.0, f64::max);
     let unit = if longest < METRES { UnitName::M } else { UnitName::Mm };
-    let mesh = if unit == UnitName::Mm { read.mesh } else { mesh_file::read(file, unit)?.mesh };
+    let mesh = read.mesh.moved(|x| x.map(|x| unit.millimetres() * x));
     let faces: Vec<Face<'_>> = mesh.faces().iter().map(|(name, faces)| Face::new(&mesh, name, faces)).collect();
     if faces.len() < 2 {
         let value = format!("{:?}", mesh.faces().keys().collect::<Vec<_>>());
@@ -74,7 +74,7 @@ pub fn draft(file: &Path) -> Result<String, SceneError> {
 
 /// Lengths of the box around a mesh.
 fn sides(mesh: &Mesh) -> [f64; 3] {
-    let [low, high] = contact::body::mesh::bounding_box(mesh.nodes());
+    let [low, high] = bounding_box(mesh.nodes());
     std::array::from_fn(|axis| high[axis] - low[axis])
 }
 
@@ -89,11 +89,7 @@ impl<'a> Face<'a> {
         for &face in faces {
             let (nodes, count) = mesh.face_with_corners(face);
             let x: Vec<[f64; 3]> = nodes[..count].iter().map(|&node| mesh.nodes()[node as usize]).collect();
-            // Twice the area of a plane quadrilateral is the cross product of its diagonals.
-            let edge = |to: usize, from: usize| -> [f64; 3] { std::array::from_fn(|axis| x[to][axis] - x[from][axis]) };
-            let (a, b) = if count == 3 { (edge(1, 0), edge(2, 0)) } else { (edge(2, 0), edge(3, 1)) };
-            let normal: [f64; 3] =
-                std::array::from_fn(|i| 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]));
+            let normal = mesh.face_vector(face, mesh.nodes());
             let area = dot(normal, normal).sqrt();
             this.area += area;
             this.moment += x.iter().map(|x| dot(normal, *x)).sum::<f64>() / count as f64;
@@ -136,38 +132,31 @@ struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     fn new(mesh: &'a Mesh, faces: &'a [Face<'a>], unit: UnitName) -> Self {
-        let named = |parts: &[&str]| faces.iter().filter(|face| is_among(face.name, parts)).collect::<Vec<_>>();
-        let roles = [TOUCHES, SYMMETRIC, HELD, LOADED];
-        let of_role = |role: usize| {
-            let is_own = |face: &&&Face<'_>| !roles[..role].iter().any(|parts| is_among(face.name, parts));
-            named(roles[role]).into_iter().filter(|face| is_own(&face)).collect::<Vec<_>>()
-        };
+        let role =
+            |face: &Face<'_>| [TOUCHES, SYMMETRIC, HELD, LOADED].iter().position(|parts| is_among(face.name, parts));
+        let of_role = |number: usize| faces.iter().filter(|face| role(face) == Some(number)).collect::<Vec<_>>();
         let [touching, symmetric, held, loaded] = [0, 1, 2, 3].map(of_role);
-        let is_free = |face: &&&Face<'_>| {
-            [&symmetric, &held, &loaded].iter().all(|others| others.iter().all(|other| other.name != face.name))
-        };
-        let lowest =
-            |face: &&&Face<'_>| face.points.iter().map(|x| x[2]).sum::<f64>() / face.points.len().max(1) as f64;
-        let by_height = |a: &&Face<'_>, b: &&Face<'_>| lowest(&a).total_cmp(&lowest(&b));
-        let free = faces.iter().filter(|face| is_free(&face)).min_by(by_height);
-        let contact = touching.first().copied().or(free).unwrap_or(&faces[0]);
+        let height = |face: &Face<'_>| face.points.iter().map(|x| x[2]).sum::<f64>() / face.points.len().max(1) as f64;
+        let lowest = faces.iter().filter(|face| role(face).is_none());
+        let lowest = lowest.min_by(|a, b| height(a).total_cmp(&height(b)));
+        let contact = touching.first().copied().or(lowest).unwrap_or(&faces[0]);
         let direction = contact.direction();
-        let others = || faces.iter().filter(|face| face.name != contact.name);
-        let opposite = others().max_by(|a, b| a.against(direction).total_cmp(&b.against(direction)));
-        let is_other = |face: &&&Face<'_>| face.name != contact.name;
-        let named_load = loaded.iter().find(is_other).copied();
-        let sides = sides(mesh);
+        let others = faces.iter().filter(|face| face.name != contact.name);
+        let opposite = others.max_by(|a, b| a.against(direction).total_cmp(&b.against(direction)));
+        let but_contact =
+            |own: Vec<&'a Face<'a>>| -> Vec<_> { own.into_iter().filter(|face| face.name != contact.name).collect() };
+        let named_load = but_contact(loaded).first().copied();
         Self {
             unit,
             faces,
             contact,
             contact_is_named: !touching.is_empty(),
-            held: held.into_iter().filter(|face| face.name != contact.name).collect(),
-            symmetric: symmetric.into_iter().filter(|face| face.name != contact.name).collect(),
+            held: but_contact(held),
+            symmetric: but_contact(symmetric),
             loaded: named_load.or(opposite).unwrap_or(&faces[0]),
             loaded_is_named: named_load.is_some(),
             direction,
-            smallest_side: sides.into_iter().fold(f64::INFINITY, f64::min),
+            smallest_side: sides(mesh).into_iter().fold(f64::INFINITY, f64::min),
             volumes: mesh.volumes().iter().map(String::as_str).collect(),
         }
     }
@@ -184,12 +173,18 @@ impl<'a> Draft<'a> {
         let mut line = |words: &str| {
             let _ = writeln!(text, "{words}");
         };
-        line(&format!("# A first scene for {file}, from the names of its faces. Change what does not fit, then"));
-        line(&format!("#   contact3d {stem}.toml look --out results/{stem}_look   shows it before any solve,"));
-        line(&format!("#   contact3d {stem}.toml evaluate --out results/{stem}    solves it,"));
-        line(&format!("#   contact3d {stem}.toml --out results/{stem}_optimum     optimizes the shape."));
+        let [stem_words, file_words] = [stem, file].map(commented);
+        line(&format!("# A first scene for {file_words}, from the names of its faces. Change what does not fit, then"));
+        line(&format!(
+            "#   contact3d {stem_words}.toml look --out results/{stem_words}_look   shows it before any solve,"
+        ));
+        line(&format!("#   contact3d {stem_words}.toml evaluate --out results/{stem_words}    solves it,"));
+        line(&format!("#   contact3d {stem_words}.toml --out results/{stem_words}_optimum     optimizes the shape."));
         line("# Units: N, mm, MPa. docs/scenes.md explains every field.");
-        line(&format!("# Faces: {}.", self.faces.iter().map(|face| face.name).collect::<Vec<_>>().join(", ")));
+        line(&format!(
+            "# Faces: {}.",
+            commented(&self.faces.iter().map(|face| face.name).collect::<Vec<_>>().join(", "))
+        ));
         line(&format!("name = {}", quoted(stem)));
         line("# Coulomb friction coefficient: dry steel on steel has about 0.15 to 0.3.");
         line("friction = 0.15\n");
@@ -206,7 +201,7 @@ impl<'a> Draft<'a> {
         line(&format!("material = {{ young_modulus = {:e}, poisson_ratio = {} }}", STEEL[0], STEEL[1]));
         if self.volumes.len() > 1 {
             let volume = quoted(self.volumes[0]);
-            line(&format!("# Volumes: {}. One of other material:", self.volumes.join(", ")));
+            line(&format!("# Volumes: {}. One of other material:", commented(&self.volumes.join(", "))));
             line(&format!("# materials = [{{ volume = {volume}, young_modulus = 7e4, poisson_ratio = 0.33 }}]"));
         }
         line("# Held displacements: u1, u2, u3 along the axes, or \"normal\". They and contact must carry the loads.");
@@ -262,7 +257,7 @@ impl<'a> Draft<'a> {
             );
         }
         let axis = face.round_axis();
-        let [low, high] = contact::body::mesh::bounding_box(&face.points);
+        let [low, high] = bounding_box(&face.points);
         let centre: [f64; 3] = std::array::from_fn(|i| 0.5 * (low[i] + high[i]));
         let across =
             |x: &[f64; 3]| (0..3).filter(|i| *i != axis).map(|i| (x[i] - centre[i]).powi(2)).sum::<f64>().sqrt();
@@ -346,6 +341,11 @@ fn plain(part: f64) -> String {
 
 fn vector(vector: [f64; 3]) -> String {
     format!("[{}]", vector.map(plain).join(", "))
+}
+
+/// A text in a comment, whose line it must not end.
+fn commented(text: &str) -> String {
+    text.replace(char::is_control, " ")
 }
 
 /// A text of TOML.

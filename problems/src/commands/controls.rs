@@ -34,10 +34,9 @@ pub fn load(
         (None, None) => format!("the start of the scene, where nothing is displaced ({option} FILE names another)"),
     };
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
-    let controls = match (file, &case.start) {
-        (Some(file), _) => read(file, Layout::of(&problem.scene)).map_err(within)?,
-        (None, Some(controls)) => Vector::from_column_slice(controls),
-        (None, None) => Vector::from_vec(problem.scene.start()),
+    let controls = match file {
+        Some(file) => read(file, Layout::of(&problem.scene)).map_err(within)?,
+        None => Vector::from_vec(case.start_controls()),
     };
     let set = &problem.admissible;
     let checked = if option == START_OPTION { set.check(&controls) } else { set.check_shape(&controls) };

@@ -42,6 +42,7 @@ mod shape_facts;
 mod shell_files;
 mod solved_shape;
 mod study;
+mod vectors;
 mod verify;
 
 pub use arguments::Arguments;

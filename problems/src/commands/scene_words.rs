@@ -76,16 +76,20 @@ pub fn contact_label(scene: &Scene, contact: usize) -> String {
     }
 }
 
+/// "1 body", "2 bodies"
+pub fn counted(count: usize, [one, several]: [&str; 2]) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
 /// The bodies and the contacts of a scene: one line for a scene of the short form, else a line for each of them.
 ///
 /// # Errors
 /// [`Failure::Computation`] for a value that has no JSON.
 pub fn facts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
-    let bodies = if scene.bodies.len() == 1 { "1 body".to_owned() } else { format!("{} bodies", scene.bodies.len()) };
+    let bodies = counted(scene.bodies.len(), ["body", "bodies"]);
     let words = match is_short(scene) {
         true => format!("{bodies} of {}, {}, friction {}", mesh(scene), pieces(scene), friction(scene)),
-        false if scene.contacts.len() == 1 => format!("{bodies}, 1 contact"),
-        false => format!("{bodies}, {} contacts", scene.contacts.len()),
+        false => format!("{bodies}, {}", counted(scene.contacts.len(), ["contact", "contacts"])),
     };
     Ok([vec![Fact::new("", "scene", words, "")], parts(scene)?].concat())
 }

@@ -2,17 +2,18 @@
 
 use crate::body::MOTIONS;
 use crate::body::loads::nodal_forces;
-use crate::equilibrium::ContactProblem;
 use crate::equilibrium::modes::OwnMotion;
+use crate::equilibrium::{ContactProblem, ContactRows};
 use crate::scene::Held;
+use crate::shape::Positions;
 use serde::Serialize;
 
-/// What is known before a solve, at the start of the scene.
+/// What is known of a shape before a solve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preview {
     /// Number of contact nodes.
     pub contact_nodes: usize,
-    /// Least and largest initial gap, mm; negative where the bodies overlap.
+    /// Least and largest gap, mm; negative where the bodies overlap.
     pub gaps: [f64; 2],
     /// Number of contact nodes whose gaps are negative.
     pub overlapping: usize,
@@ -41,8 +42,12 @@ const FREE: f64 = 1e-9;
 impl ContactProblem {
     /// What is known of the scene before a solve, at its start.
     pub fn preview(&self) -> Preview {
-        let (positions, rows) = (self.start_positions(), self.start_rows());
-        let rigid = self.rigid_scene(&positions, rows);
+        self.preview_at(&self.start_positions(), self.start_rows())
+    }
+
+    /// What is known of a shape before its solve: `positions` of all nodes, mm, and the contact rows there.
+    pub fn preview_at(&self, positions: &Positions, rows: &ContactRows) -> Preview {
+        let rigid = self.rigid_scene(positions, rows);
         let of_body = |(number, scene): (usize, &crate::scene::BodyScene)| {
             let body = &self.bodies[number];
             let motions = rigid.own_motions(number);

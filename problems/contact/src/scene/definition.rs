@@ -281,8 +281,7 @@ impl Scene {
             let allowed = format!("above the bottom, which has the height {bottom} mm at ({x1}, {x2})");
             SceneError::require(top > bottom, format!("{name}.top"), top, allowed)?;
         }
-        let faces =
-            self.contacts.iter().flat_map(|contact| std::iter::once(&contact.slave).chain(contact.master_face()));
+        let faces = self.contacts.iter().flat_map(ContactScene::faces);
         let contact: Vec<&str> = faces.filter(|face| face.body == index).map(|face| face.face.as_str()).collect();
         let check = |part: &str, index: usize, face: &str| {
             let field = format!("{name}.{part}[{index}].face");

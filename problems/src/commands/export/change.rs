@@ -11,8 +11,10 @@ use crate::commands::export::mesh::divided;
 use crate::commands::numbers::{exact, number};
 use crate::commands::report::faces_by_name;
 use crate::commands::scene_words::stem;
+use crate::commands::vectors::{cross, dot, minus, sum};
 use contact::body::mesh::{CellFace, Mesh};
 use contact::equilibrium::ContactProblem;
+use contact::scene::ContactScene;
 use std::collections::{BTreeMap, HashSet};
 
 /// A face of a mesh as triangles between its nodes.
@@ -34,14 +36,14 @@ impl Sheet {
 
     /// The unit normal at a node: the mean over its triangles, weighted by their areas.
     fn normal(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for &triangle in &self.of_node[&node] {
+        let own = self.of_node[&node].iter().map(|&triangle| {
             let [a, b, c] = self.triangles[triangle].map(|node| places[node as usize]);
-            let normal = cross(minus(b, a), minus(c, a));
-            sum = std::array::from_fn(|axis| sum[axis] + normal[axis]);
-        }
-        let length = dot(sum, sum).sqrt();
-        sum.map(|part| part / length)
+            cross(minus(b, a), minus(c, a))
+        });
+        let all = own.fold([0.0; 3], sum);
+        let length = dot(all, all).sqrt();
+        // Normals that cancel leave no side to remove anything on.
+        all.map(|part| if length > 0.0 { part / length } else { 0.0 })
     }
 
     /// The point of the face nearest to x, where the node has moved from x. No point beyond the node is nearer, so that
@@ -79,10 +81,8 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
         let (mesh, start, end) = (&problem.bodies[body].mesh, &start[body], &end[body]);
         for (name, faces) in faces_by_name(mesh) {
             let sheet = Sheet::new(mesh, &faces);
-            let touches = problem.scene.contacts.iter().any(|contact| {
-                let mut sides = std::iter::once(&contact.slave).chain(contact.master_face());
-                sides.any(|side| side.body == body && side.face == name)
-            });
+            let mut sides = problem.scene.contacts.iter().flat_map(ContactScene::faces);
+            let touches = sides.any(|side| side.body == body && side.face == name);
             if !touches && sheet.of_node.keys().all(|&node| start[node as usize] == end[node as usize]) {
                 continue;
             }
@@ -131,20 +131,8 @@ fn nearest_in([a, b, c]: [[f64; 3]; 3], x: [f64; 3]) -> [f64; 3] {
     sides.into_iter().reduce(|best, other| if distance(&other) < distance(&best) { other } else { best }).unwrap_or(a)
 }
 
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 fn square(a: [f64; 3]) -> f64 {
     dot(a, a)
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! The scene in three dimensions: a part per named face, with what acts on it and with its gaps; rigid obstacles.
 
 use crate::commands::failure::Failure;
-use crate::commands::look::faces::Acts;
+use crate::commands::look::case::LookedCase;
+use crate::commands::look::faces::{contacts_of, held_on, loads_on};
 use crate::commands::report::{ContactSurface, LIFT, Skin, apart, extent, faces_by_name};
 use crate::commands::scene_words;
-use contact::equilibrium::{ContactProblem, ContactRows, Positions};
+use contact::scene::Scene;
 use figures::{Space, SpaceBody, SpaceField, SpaceShape, SpaceState, SpaceView, View, nice_below};
 
 /// What acts on a face, by the numbers of their colours.
@@ -22,19 +23,16 @@ struct Part {
 }
 
 /// Named faces of all bodies and obstacles, in all load cases.
-pub fn view(cases: &[(String, ContactProblem)], positions: &Positions) -> Result<SpaceView, Failure> {
-    let problem = &cases[0].1;
-    let surfaces = ContactSurface::all(problem);
-    let rows = |(_, problem): &(String, ContactProblem)| problem.rows(positions).map_err(Failure::computation);
-    let rows = cases.iter().map(rows).collect::<Result<Vec<_>, _>>()?;
-    let parts = parts(problem, &surfaces, positions, &rows[0]);
-    let state = |(case, ((_, problem), rows)): (usize, (&(String, ContactProblem), &ContactRows))| SpaceState {
+pub fn view(cases: &[LookedCase]) -> Result<SpaceView, Failure> {
+    let surfaces = ContactSurface::all(&cases[0].problem);
+    let parts = parts(&cases[0], &surfaces);
+    let state = |(number, case): (usize, &LookedCase)| SpaceState {
         shape: 0,
-        case,
+        case: number,
         displacements: parts.iter().map(|part| vec![[0.0; 3]; part.numbers.len()]).collect(),
         values: vec![
-            parts.iter().map(|part| vec![class(problem, part); part.numbers.len()]).collect(),
-            parts.iter().map(|part| gaps(problem, part, rows)).collect(),
+            parts.iter().map(|part| vec![class(&case.problem.scene, part); part.numbers.len()]).collect(),
+            parts.iter().map(|part| gaps(case, part)).collect(),
         ],
     };
     let field = |name: &str, unit: &str, classes: &[&str]| SpaceField {
@@ -51,8 +49,8 @@ pub fn view(cases: &[(String, ContactProblem)], positions: &Positions) -> Result
             name: "shape".into(),
             places: parts.iter().map(|part| part.places.clone()).collect(),
         }],
-        cases: cases.iter().map(|(name, _)| name.clone()).collect(),
-        states: cases.iter().zip(&rows).enumerate().map(state).collect(),
+        cases: cases.iter().map(|case| case.name.clone()).collect(),
+        states: cases.iter().enumerate().map(state).collect(),
         bodies: parts
             .iter()
             .map(|part| SpaceBody {
@@ -66,12 +64,8 @@ pub fn view(cases: &[(String, ContactProblem)], positions: &Positions) -> Result
     space.view().map_err(Failure::computation)
 }
 
-fn parts(
-    problem: &ContactProblem,
-    surfaces: &[ContactSurface],
-    positions: &Positions,
-    rows: &ContactRows,
-) -> Vec<Part> {
+/// The parts of the first load case.
+fn parts(LookedCase { problem, positions, rows, .. }: &LookedCase, surfaces: &[ContactSurface]) -> Vec<Part> {
     let side = |axis: usize| {
         let extents = positions.iter().map(|nodes| extent(nodes.iter().copied(), axis));
         extents.map(|[least, most]| most - least).fold(0.0, f64::max)
@@ -124,19 +118,22 @@ fn parts(
 }
 
 /// The number of what acts on a part; none for an obstacle.
-fn class(problem: &ContactProblem, part: &Part) -> f64 {
+fn class(scene: &Scene, part: &Part) -> f64 {
     let Some((body, face)) = &part.face else { return f64::NAN };
-    match Acts::of(&problem.scene, *body, face) {
-        Acts { touches: true, .. } => 1.0,
-        Acts { held: true, loaded: true, .. } => 4.0,
-        Acts { held: true, .. } => 3.0,
-        Acts { loaded: true, .. } => 2.0,
+    let touches = contacts_of(scene, *body, face).next().is_some();
+    let held = held_on(&scene.bodies[*body], face).next().is_some();
+    let loaded = loads_on(&scene.bodies[*body], face).next().is_some();
+    match (touches, held, loaded) {
+        (true, ..) => 1.0,
+        (_, true, true) => 4.0,
+        (_, true, false) => 3.0,
+        (_, false, true) => 2.0,
         _ => 0.0,
     }
 }
 
 /// Gaps at the contact nodes of a part; NaN elsewhere.
-fn gaps(problem: &ContactProblem, part: &Part, rows: &ContactRows) -> Vec<f64> {
+fn gaps(LookedCase { problem, rows, .. }: &LookedCase, part: &Part) -> Vec<f64> {
     let mut found = vec![f64::NAN; part.numbers.len()];
     let Some((body, face)) = &part.face else { return found };
     let points = problem.boundary.contact_points().iter().zip(&rows.nodes);

@@ -49,13 +49,11 @@ impl ContactSurface {
         let contacts = &problem.scene.contacts;
         let free = |body: usize| {
             let sides = contacts.iter().filter(|contact| !contact.is_tied());
-            sides
-                .flat_map(|contact| std::iter::once(&contact.slave).chain(contact.master_face()))
-                .any(|own| own.body == body)
+            sides.flat_map(|contact| contact.faces()).any(|own| own.body == body)
         };
         let mut found: Vec<Self> = Vec::new();
         for (index, contact) in contacts.iter().enumerate() {
-            for side in std::iter::once(&contact.slave).chain(contact.master_face()) {
+            for side in contact.faces() {
                 if problem.map.shapes(side.body) && (!contact.is_tied() || !free(side.body)) {
                     let surface = Self::new(problem, index, side);
                     if !surface.nodes.iter().any(|&node| problem.map.moves(side.body, node)) {

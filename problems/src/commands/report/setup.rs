@@ -5,6 +5,7 @@ use crate::commands::report::bodies::apart;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::skin::{Skin, extent};
 use crate::commands::scene_words;
+use crate::commands::vectors::{dot, sum};
 use contact::body::Body;
 use contact::body::mesh::CellFace;
 use contact::equilibrium::{ContactProblem, ContactRows, Positions};
@@ -271,10 +272,7 @@ impl Place<'_> {
             let (nodes, corners) = self.body.mesh.face_with_corners(*face);
             let x: Vec<[f64; 3]> = nodes[..corners].iter().map(|&node| self.nodes[node as usize]).collect();
             let centre = std::array::from_fn(|axis| x.iter().map(|x| x[axis]).sum::<f64>() / corners as f64);
-            let edge = |to: usize, from: usize| -> [f64; 3] { std::array::from_fn(|axis| x[to][axis] - x[from][axis]) };
-            let (a, b) = if corners == 3 { (edge(1, 0), edge(2, 0)) } else { (edge(2, 0), edge(3, 1)) };
-            let normal: [f64; 3] =
-                std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+            let normal = self.body.mesh.face_vector(*face, self.nodes);
             let length = dot(normal, normal).sqrt();
             (sum(centre, self.lift), normal.map(|part| part / length))
         };
@@ -345,12 +343,4 @@ fn far_apart(spots: Vec<Spot>) -> Vec<Spot> {
         chosen.push(*next);
     }
     chosen
-}
-
-fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] + b[axis])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }

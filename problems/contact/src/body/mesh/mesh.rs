@@ -229,6 +229,18 @@ impl Mesh {
         tributary_areas(&nodes, AreaKind::Surface).into_iter().sum()
     }
 
+    /// The area vector of a face by its corners, mm²: ∫n dA with the outward normal n, for nodes at positions in mm.
+    pub fn face_vector(&self, face: CellFace, positions: &[[f64; 3]]) -> [f64; 3] {
+        let (nodes, corners) = self.face_with_corners(face);
+        let edge = |to: usize, from: usize| -> [f64; 3] {
+            let [to, from] = [to, from].map(|corner| positions[nodes[corner] as usize]);
+            std::array::from_fn(|axis| to[axis] - from[axis])
+        };
+        // Half the cross product of two sides, or of the diagonals.
+        let (a, b) = if corners == 3 { (edge(1, 0), edge(2, 0)) } else { (edge(2, 0), edge(3, 1)) };
+        std::array::from_fn(|i| 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]))
+    }
+
     /// Positions of the nodes of a cell, as numbers of any kind.
     pub(crate) fn cell_at<T>(&self, cell: usize, position: impl Fn(u32) -> [T; 3]) -> CellNodes<T> {
         let Cell { kind, nodes } = self.cell(cell);

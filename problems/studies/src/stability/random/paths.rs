@@ -54,7 +54,7 @@ impl Examined {
     pub fn new(case: &Case) -> Result<Self, String> {
         let message = |error: contact::error::SceneError| error.to_string();
         let problem = Arc::new(ContactProblem::new(case.scene.clone()).map_err(message)?);
-        let controls = case.start.clone().unwrap_or_else(|| case.scene.start());
+        let controls = case.start_controls();
         let contact = DirectSolver::new(Arc::clone(&problem)).and_then(|solver| solver.contact(&controls));
         let base = problem.contact_area();
         let smallest = contact.as_ref().map_or(0.0, |contact| (NOTHING * contact.load / base).powi(EXPONENT));
