@@ -109,8 +109,12 @@ fn accuracy_on_demand_halves_the_cost_on_the_convex_problems() {
         .filter(|problem| problem.convex && everywhere(problem) && problem.family == Family::Unconstrained)
         .collect();
     let (mut total, mut logs) = ((0.0, 0.0), vec![]);
-    for problem in &convex {
-        let (tight, demand) = (run(problem, AccuracyPolicy::Tightest), run(problem, AccuracyPolicy::ON_DEMAND));
+    let policies = [AccuracyPolicy::Tightest, AccuracyPolicy::ON_DEMAND];
+    let [tight, demand] = std::thread::scope(|scope| {
+        let all = |policy| convex.iter().map(|problem| run(problem, policy)).collect::<Vec<_>>();
+        policies.map(|policy| scope.spawn(move || all(policy))).map(|runs| runs.join().unwrap())
+    });
+    for (problem, (tight, demand)) in convex.iter().zip(tight.iter().zip(&demand)) {
         println!(
             "{:<18} tight {:>6} {:>4} {:.1e}  on demand {:>6} {:>4} {:.1e}",
             problem.name, tight.0, tight.1, tight.2, demand.0, demand.1, demand.2

@@ -60,7 +60,7 @@ fn heights_and_offsets_do_not_matter_to_a_foot() {
     let raised = [("height = 20\n", "height = 30.1\n"), ("19.5", "29.6"), ("[90000, 96000]", "[135000, 147000]")];
     let far = [("form = \"plane\"\nheight = 20\n\n[surface", "form = \"plane\"\nheight = 1000\n\n[surface")];
     for (changes, warnings) in [(&raised[..], vec![]), (&far[..], vec!["large-displacement"])] {
-        let result = changed("foot", changes, &[]);
+        let result = changed("foot", changes, &["--mesh", "6"]);
         let [start, end] = ["objective_start", "objective"].map(|key| result[key].as_f64().unwrap());
         assert!(
             end < 0.3 * start && result["termination"]["confirmed"] == true,

@@ -143,11 +143,11 @@ fn a_run_with_clusters_is_continued_with_them() {
     let folder = scratch();
     let folder = folder.path().join("run");
     let run = ["--mesh", "8", "--subdomains", "4", "--solver", "newton", "--max-evaluations"];
-    let expected = alone_on(clustered, &[&run[..], &["4"]].concat());
-    together_on(clustered, 3, &[&run[..], &["2", "--out", text(&folder)]].concat()).unwrap();
+    let expected = alone_on(clustered, &[&run[..], &["2"]].concat());
+    together_on(clustered, 3, &[&run[..], &["1", "--out", text(&folder)]].concat()).unwrap();
     // The scene of the folder names the clusters; the one that is opened is not read.
-    let report = together(2, &["--resume", text(&folder), "--max-evaluations", "4"]).unwrap();
-    assert_eq!(report["resumed_evaluations"], 2);
+    let report = together(2, &["--resume", text(&folder), "--max-evaluations", "2"]).unwrap();
+    assert_eq!(report["resumed_evaluations"], 1);
     for key in ["objective", "controls", "course"] {
         assert_eq!(found(report.clone())[key], expected[key], "{key}");
     }

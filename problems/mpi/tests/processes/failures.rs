@@ -14,7 +14,7 @@ const RUN: [&str; 10] =
     ["--mesh", "4", "--solver", "newton", "--threads", "1", "--max-evaluations", "3", "--json", "--out"];
 
 /// Failures of an ordinary run of the test.
-const FEW: usize = 48;
+const FEW: usize = 24;
 
 /// Lets one process fail; whether it did.
 fn fails(rank: usize, processes: usize, call: usize, (kind, status): (&str, i32), folder: &Path) -> bool {

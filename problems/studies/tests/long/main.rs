@@ -1,4 +1,4 @@
-//! Studies of minutes, in a release build: `cargo test --release --locked -p studies --features long-tests --test
+//! Studies of minutes: `cargo test --locked -p studies --features long-tests --test
 //! long`.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
