@@ -57,6 +57,8 @@ pub(crate) const FEASIBILITY: f64 = 1e-12;
 const LARGEST_PROJECTED_VIOLATION: f64 = 1e-6;
 /// A step is shortened to no less than this share.
 const SHORTEST_SHARE: f64 = 1e-3;
+/// A step is shortened by at most this share at a time.
+const LARGEST_CUT: f64 = 0.3;
 
 /// A trial point that differs from the center by less than this share of every variable cannot be told from it.
 const SHORTEST_MOVE: f64 = 2.0 * f64::EPSILON;
@@ -104,6 +106,18 @@ impl SubproblemError {
                 | Self::OuterNotFinite { at_base: true }
         )
     }
+}
+
+/// Shares of a step whose end violates the set by so much, longest first: by a factor of 0.7 at a time, where the
+/// violation is small with shorter cuts before, each twice as long as the last. The violation is relative to the sides
+/// of the set: most of a step that is short beside them may lie outside.
+fn shares(violation: f64) -> impl Iterator<Item = f64> {
+    let (mut share, mut cut) = (1.0, (2.0 * violation).clamp(1e-10, LARGEST_CUT));
+    std::iter::from_fn(move || {
+        share *= 1.0 - cut;
+        cut = if share > 0.99 { LARGEST_CUT.min(2.0 * cut) } else { LARGEST_CUT };
+        (share >= SHORTEST_SHARE).then_some(share)
+    })
 }
 
 impl Proposal {
@@ -160,7 +174,7 @@ impl Proposal {
     }
 
     /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the
-    /// center, which is admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
+    /// center, which is admissible.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
         let violation = |x: &Vector| set.violation_near(x, &state.center);
         self.trial = set.clamp_to_box(&self.trial);
@@ -175,17 +189,32 @@ impl Proposal {
             self.violation = violation(&projected);
             self.trial = projected;
         }
-        let mut factor = 1.0;
+        let mut shares = shares(self.violation);
         while self.violation > allowed {
-            factor *= if factor > 0.99 { 1.0 - (2.0 * self.violation).clamp(1e-10, 0.3) } else { 0.7 };
-            if factor < SHORTEST_SHARE {
+            let Some(share) = shares.next() else {
                 return Err(SubproblemError::Infeasible { violation: self.violation });
-            }
-            self.trial = set.clamp_to_box(&(&state.center + &self.step * factor));
+            };
+            self.trial = set.clamp_to_box(&(&state.center + &self.step * share));
             self.violation = violation(&self.trial);
         }
         self.step = &self.trial - &state.center;
         self.step_length = state.norm.length(&self.step);
         Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shares;
+
+    /// Cuts in proportion to the violation took millions of trials where the step was short beside the sides.
+    #[test]
+    fn any_violation_takes_few_shares() {
+        for exponent in -16..=1 {
+            let all: Vec<f64> = shares(10_f64.powi(exponent)).collect();
+            assert!((10..60).contains(&all.len()), "1e{exponent}: {}", all.len());
+            assert!(all[0] < 1.0 && all.windows(2).all(|pair| pair[1] < pair[0]), "1e{exponent}: {all:?}");
+            assert!(all.windows(2).all(|pair| pair[1] > 0.69 * pair[0]), "1e{exponent}: {all:?}");
+        }
     }
 }
