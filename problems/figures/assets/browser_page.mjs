@@ -41,6 +41,8 @@ export async function opened(report) {
       document.querySelector(".space-view").textContent.includes("cannot");
     await page.waitForFunction(ready, { timeout: 20000 });
     const milliseconds = performance.now() - begun;
+    // The view may take the place of higher pictures.
+    await figure.evaluate((own) => own.scrollIntoView());
     assert(
       !(await page.$eval(".space-view", (view) => view.textContent)).includes("cannot"),
       await page.$eval(".space-view", (view) => view.textContent),
