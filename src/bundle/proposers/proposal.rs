@@ -57,8 +57,8 @@ pub(crate) const FEASIBILITY: f64 = 1e-12;
 const LARGEST_PROJECTED_VIOLATION: f64 = 1e-6;
 /// A step is shortened to no less than this share.
 const SHORTEST_SHARE: f64 = 1e-3;
-/// A step is shortened by at most this share at a time.
-const LARGEST_CUT: f64 = 0.3;
+/// A step is shortened by at most this share of itself at a time.
+const LARGEST_SHORTENING: f64 = 0.3;
 
 /// A trial point that differs from the center by less than this share of every variable cannot be told from it.
 const SHORTEST_MOVE: f64 = 2.0 * f64::EPSILON;
@@ -108,14 +108,14 @@ impl SubproblemError {
     }
 }
 
-/// Shares of a step whose end violates the set by so much, longest first: by a factor of 0.7 at a time, where the
-/// violation is small with shorter cuts before, each twice as long as the last. The violation is relative to the sides
-/// of the set: most of a step that is short beside them may lie outside.
+/// Shares of a step to be tried, longest first, where its end violates the set. The first one is shorter by twice the
+/// violation, but the violation is relative to the sides of the set, and most of a step that is short beside them may
+/// lie outside: each shortening is twice the last, up to three tenths.
 fn shares(violation: f64) -> impl Iterator<Item = f64> {
-    let (mut share, mut cut) = (1.0, (2.0 * violation).clamp(1e-10, LARGEST_CUT));
+    let (mut share, mut shortening) = (1.0, (2.0 * violation).clamp(1e-10, LARGEST_SHORTENING));
     std::iter::from_fn(move || {
-        share *= 1.0 - cut;
-        cut = if share > 0.99 { LARGEST_CUT.min(2.0 * cut) } else { LARGEST_CUT };
+        share *= 1.0 - shortening;
+        shortening = if share > 0.99 { LARGEST_SHORTENING.min(2.0 * shortening) } else { LARGEST_SHORTENING };
         (share >= SHORTEST_SHARE).then_some(share)
     })
 }
@@ -207,7 +207,7 @@ impl Proposal {
 mod tests {
     use super::shares;
 
-    /// Cuts in proportion to the violation took millions of trials where the step was short beside the sides.
+    /// Shortening in proportion to the violation took millions of trials where the step was short beside the sides.
     #[test]
     fn any_violation_takes_few_shares() {
         for exponent in -16..=1 {

@@ -1,5 +1,4 @@
-//! Studies of minutes: `cargo test --locked -p studies --features long-tests --test
-//! long`.
+//! Studies of minutes: `cargo test --locked -p studies --features long-tests --test long`.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
