@@ -6,13 +6,17 @@
 use crate::body::elasticity::Material;
 use crate::body::elasticity::packed::lower_start;
 use crate::body::mesh::narrow;
-use crate::body::{Place, Solid};
+use crate::body::{MOTIONS, Place, Solid};
+use crate::error::ContactError;
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::LowerPattern;
 use std::collections::HashMap;
 use std::sync::Arc;
+
+/// |K R| over |K| |R| that counts as rounding: some 1e-14 in ordinary bodies, more far from the origin.
+const RESISTED: f64 = 1e-8;
 
 /// A part of a body.
 #[derive(Debug)]
@@ -115,6 +119,42 @@ impl Piece {
             }
         }
         values
+    }
+
+    /// Checks that a stiffness matrix of the piece, over [`PiecePattern::lower`], does not resist its rigid motions:
+    /// what solvers take for the kernel has to be one.
+    ///
+    /// # Errors
+    /// [`ContactError::ResistsRigidMotions`] with |K R| over |K| |R|, in the largest entries.
+    pub(crate) fn check_kernel(
+        &self,
+        solid: &Solid,
+        name: &str,
+        positions: &[[f64; 3]],
+        stiffness: &[f64],
+    ) -> Result<(), ContactError> {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let [mut low, mut high] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for position in self.positions(positions) {
+            for (axis, x) in position.into_iter().enumerate() {
+                (low[axis], high[axis]) = (low[axis].min(x), high[axis].max(x));
+            }
+        }
+        let centre: [f64; 3] = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
+        let length = (0..3).map(|axis| 0.5 * (high[axis] - low[axis])).fold(0.0, f64::max);
+        let motions: Vec<_> = self.places(solid, positions).map(|place| place.motions(centre, length)).collect();
+        let mut image = vec![0.0; self.dof_count()];
+        let mut resisted = 0.0_f64;
+        for mode in 0..MOTIONS {
+            let motion: Vec<f64> = motions.iter().flat_map(|motions| motions[mode]).collect();
+            self.pattern.lower.multiply(stiffness, &motion, &mut image);
+            resisted = resisted.max(largest(&image));
+        }
+        let ratio = resisted / largest(stiffness);
+        match ratio <= RESISTED {
+            true => Ok(()),
+            false => Err(ContactError::ResistsRigidMotions { body: name.to_owned(), ratio, allowed: RESISTED }),
+        }
     }
 
     /// Displacements of all nodes of a cell, by its place among the cells, from those of the piece.

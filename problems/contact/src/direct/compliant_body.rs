@@ -182,13 +182,6 @@ impl ContactBody {
         u
     }
 
-    /// |Nᵀ(f − Bᵀλ)|₂: the resultants that the forces leave along the free motions, N.
-    pub(super) fn imbalance(&self, multipliers: &[f64]) -> f64 {
-        let mut force = self.contact_forces(multipliers);
-        add_scaled(&mut force, 1.0, &self.load.contact);
-        norm(&self.stiff().motions.iter().map(|motion| dot(motion, &force)).collect::<Vec<f64>>())
-    }
-
     /// C r̂ for packed multipliers, over the contact dofs, mm: how far one step of refinement moves them.
     pub(super) fn refinement(&self, body: &Body, positions: &[[f64; 3]], multipliers: &[f64]) -> Vec<f64> {
         let (forces, condensed) = (self.contact_forces(multipliers), &self.stiff().condensed);

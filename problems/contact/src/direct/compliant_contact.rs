@@ -1,9 +1,11 @@
 //! The contact problem of condensed bodies in contact forces and rigid motions.
 //!
 //! ```text
-//! w(λ, a) = d − C λ + R a,   Rᵀ λ = e,   λ = Π(λ + w)          C in units of its mean normal diagonal, forces in units of the load
+//! w(λ, a) = d − C λ + R a,   Rᵀ λ = e,   λ = Π(λ + w)          C in units of 1/c, forces in units of the load
 //! ```
-//! C is the sum of the bodies' compliances over the packed rows, R a the jumps of their free rigid motions. Motions
+//! c is the mean normal stiffness of the contact nodes: the stiffness of what a contact force moves when all other
+//! nodes rest. The entries of C are no unit: where a body is nearly free to move, they are larger than any approach of
+//! contact nodes that matters, and residuals relative to them would say nothing. C is the sum of the bodies' compliances over the packed rows, R a the jumps of their free rigid motions. Motions
 //! that no contact node feels are left out: no force depends on them.
 
 use crate::direct::compliant_body::ContactBody;
@@ -56,8 +58,13 @@ pub(super) struct Placement {
 }
 
 impl CompliantContact {
-    /// The problem of some bodies with given contact rows; `load`: unit of forces, N.
-    pub fn new(problem: Arc<ContactProblem>, bodies: Vec<ContactBody>, rows: Arc<ContactRows>, load: f64) -> Self {
+    /// The problem of some bodies with given contact rows; units: of forces, the load, N; of compliances, mm/N.
+    pub fn new(
+        problem: Arc<ContactProblem>,
+        bodies: Vec<ContactBody>,
+        rows: Arc<ContactRows>,
+        [load, unit]: [f64; 2],
+    ) -> Self {
         let boundary = &problem.boundary;
         let count = boundary.row_count;
         let mut compliance = Mat::<f64>::zeros(count, count);
@@ -66,8 +73,6 @@ impl CompliantContact {
             rows.add_compliance(&body.factors.compliance, &mut compliance);
             rows.add_jumps(&load.free, 1.0, &mut constant);
         }
-        let normals = boundary.points.iter().map(|point| compliance[(point.start, point.start)]);
-        let unit = normals.sum::<f64>() / boundary.points.len() as f64;
         for column in 0..count {
             compliance.col_as_slice_mut(column).iter_mut().for_each(|c| *c /= unit);
         }
@@ -79,6 +84,14 @@ impl CompliantContact {
         let offset = vec![0.0; motions.ncols()];
         let placement = Placement { constant, offset };
         Self { placement, problem, compliance, motions, resultant, load, unit, bodies, rows, basis, inverse_basis }
+    }
+
+    /// Changes the unit of forces, N, and that of given unknowns.
+    pub(super) fn rescale(&mut self, load: f64, unknowns: &mut [f64]) {
+        let factor = self.load / load;
+        let placed = self.placement.constant.iter_mut().chain(&mut self.placement.offset);
+        placed.chain(&mut self.resultant).chain(unknowns).for_each(|value| *value *= factor);
+        self.load = load;
     }
 
     /// Number of packed rows.

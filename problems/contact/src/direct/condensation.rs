@@ -56,9 +56,12 @@ impl CondensationPattern {
     /// Condenses one shape.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite.
+    /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite,
+    /// [`ContactError::ResistsRigidMotions`].
     pub fn condense(self: &Arc<Self>, body: &Body, positions: &[[f64; 3]]) -> Result<CondensedBody, ContactError> {
-        let mut values = self.stiffness(body, positions);
+        let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
+        self.piece.check_kernel(&body.solid, &body.name, positions, &values)?;
+        self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
         let shift = self.impose(&mut values);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();

@@ -10,8 +10,8 @@
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::cone_programs::{Programs, by_cone_programs, steps_for_programs};
 use crate::direct::newton::{Problem, SPRINGS, TIGHTEST, newton, step};
-use crate::equilibrium::Work;
 use crate::equilibrium::law::Linearization;
+use crate::equilibrium::{ForceUnit, Work};
 use nonsmooth::interruption::interrupted;
 
 /// Compliances that the first problem is tried with, one after the other until Newton's method converges.
@@ -43,6 +43,20 @@ pub(super) struct Reached {
 }
 
 impl Reached {
+    /// Goes on from a solution whose forces turn out to be small in the unit that they were found in: motions of the
+    /// bodies have taken the approach away that the unit counts.
+    pub(super) fn refine(&mut self, contact: &mut CompliantContact, unit: ForceUnit, tolerance: f64) {
+        let forces: Vec<f64> = self.unknowns[..contact.row_count()].iter().map(|force| force * contact.load).collect();
+        let Some(finer) = unit.finer(&contact.problem.boundary, &forces, contact.load) else { return };
+        contact.rescale(finer, &mut self.unknowns);
+        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance, max_steps: usize::MAX };
+        // What does not converge any further is left to the certificate.
+        if let Some(found) = newton(contact, self.unknowns.clone(), problem, &mut self.history) {
+            self.unknowns = found;
+        }
+        self.linearizations = contact.linearize(&contact.residual(&self.unknowns, 0.0).1);
+    }
+
     pub(super) fn work(&self) -> Work {
         let programs = self.programs.as_ref().map_or([0; 2], |programs| [programs.iterations, programs.newton_steps]);
         let newton_steps = self.history.len() + programs[1];

@@ -33,7 +33,7 @@ const ACCEPTABLE: f64 = 1e-9;
 /// How one Newton iteration is run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Problem {
-    /// δ, over the mean compliance.
+    /// δ, over the unit of compliances.
     pub(super) delta: f64,
     pub(super) spring: f64,
     pub(super) tolerance: f64,

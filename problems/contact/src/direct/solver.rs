@@ -11,12 +11,13 @@ use crate::direct::diagnosis::{diagnose, estimate_contraction};
 use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::displacement_tangents::displacement_tangents;
 use crate::direct::force_rounding::change_of_forces;
+use crate::direct::forces::forces;
 use crate::direct::newton::FLOOR_REACHED;
 use crate::direct::tangents::{CondensedTangents, tangents};
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
-    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Positions, Sensitivities,
-    SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
+    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, ForceUnit, Positions,
+    Sensitivities, SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
@@ -106,7 +107,7 @@ impl DirectSolver {
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium of rigid bodies, a failing factorisation.
     pub fn contact(&self, controls: &[f64]) -> Result<CompliantContact, ContactError> {
-        Ok(self.condense(Configuration::new(&self.problem, controls)?)?.0)
+        Ok(self.condense(&Configuration::new(&self.problem, controls)?)?.0)
     }
 
     /// A body of a shape, and whether it has been factored for it or taken from the shelf.
@@ -133,15 +134,11 @@ impl DirectSolver {
         Ok(((factored, load), is_new))
     }
 
-    /// Condenses all bodies of a shape; also the positions of its nodes, the load (zero at rest) and the number of
-    /// factorisations.
-    fn condense(
-        &self,
-        configuration: Configuration,
-    ) -> Result<(CompliantContact, Positions, f64, usize), ContactError> {
+    /// Condenses all bodies of a shape; also the unit of forces (zero at rest) and the number of factorisations.
+    fn condense(&self, configuration: &Configuration) -> Result<(CompliantContact, ForceUnit, usize), ContactError> {
         Stage::Factorization.enter()?;
         let map = &self.problem.map;
-        let condensed = |number: usize| Ok((number, self.condense_body(number, &configuration)?));
+        let condensed = |number: usize| Ok((number, self.condense_body(number, configuration)?));
         let mut factorizations = 0;
         let mut bodies: Vec<(usize, CondensedPart)> = Vec::new();
         for number in map.shaped_bodies() {
@@ -166,11 +163,12 @@ impl DirectSolver {
             ContactBody { body, load, rows }
         };
         let bodies: Vec<ContactBody> = bodies.map(with_rows).collect();
-        let load = configuration.load(contact_stiffness(boundary, &bodies));
-        let unit = if load > 0.0 { load } else { 1.0 };
+        let stiffness = contact_stiffness(boundary, &bodies);
+        let unit = configuration.unit(stiffness);
+        let units = [if unit.first() > 0.0 { unit.first() } else { 1.0 }, stiffness.recip()];
         let rows = Arc::clone(&configuration.rows);
-        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, rows, unit);
-        Ok((contact, configuration.positions, load, factorizations))
+        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, rows, units);
+        Ok((contact, unit, factorizations))
     }
 
     /// The state of a shape to a relative residual, from contact displacements of a similar shape or from nothing.
@@ -180,11 +178,11 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<ContactState<DirectState>, ContactError> {
-        let (mut contact, positions, load, factorizations) = self.condense(configuration)?;
+        let (mut contact, unit, factorizations) = self.condense(&configuration)?;
         Stage::Contact.enter()?;
-        let (solution, work, programs) = if load > 0.0 {
+        let (solution, work, programs) = if unit.first() > 0.0 {
             // Why there is no state is asked only where none was found.
-            let found = Self::equilibrium(&mut contact, start, tolerance);
+            let found = Self::equilibrium(&mut contact, unit, start, tolerance);
             found.map_err(|error| match error {
                 // Where rounding hides the state, it hides a proof as well.
                 ContactError::BeyondPrecision { .. } | ContactError::Interrupted => error,
@@ -193,11 +191,12 @@ impl DirectSolver {
         } else {
             (at_rest(&contact), Work::default(), 0)
         };
+        let load = if unit.first() > 0.0 { contact.load } else { 0.0 };
         let displacements = contact.bodies.iter().map(|_| OnceLock::new()).collect();
-        let rows = Arc::clone(&contact.rows);
-        let state = DirectState { positions, contact, solution, load, displacements };
-        let forces = state.forces();
+        let forces = forces(&contact, &solution, &configuration);
         forces.residuals.check(tolerance)?;
+        let Configuration { positions, rows, .. } = configuration;
+        let state = DirectState { positions, contact, solution, load, displacements };
         Ok(ContactState {
             forces,
             rows,
@@ -216,13 +215,17 @@ impl DirectSolver {
     /// The equilibrium of a condensed shape, with the work and the cone programs that it took.
     fn equilibrium(
         contact: &mut CompliantContact,
+        unit: ForceUnit,
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(CondensedSolution, Work, usize), ContactError> {
         let size: usize = contact.bodies.iter().map(|body| body.load.free.len()).sum();
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
-        let reached = equilibrium(contact, start.as_deref(), tolerance, max_steps);
+        let mut reached = equilibrium(contact, start.as_deref(), tolerance, max_steps);
+        if reached.solved {
+            reached.refine(contact, unit, tolerance);
+        }
         let (work, programs) = (reached.work(), reached.programs.as_ref().map_or(0, |programs| programs.count));
         if interrupted() {
             return Err(ContactError::Interrupted);

@@ -7,12 +7,14 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Factor by which other residuals of an iterate, in other norms, may exceed its Newton residual.
-const OTHER_NORMS: f64 = 4.0;
+const OTHER_NORMS: f64 = 10.0;
 
 /// Largest residual of a state that any solver returns, unless a coarser one is asked for.
 pub const MAX_RESIDUAL: f64 = 1e-8;
 
-/// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless.
+/// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless. Their units belong to the scene
+/// and not to a solver: the load, and for the displacements of a contact node its stiffness c = E*√A, with the plane
+/// modulus E* of the bodies in series and the area A of the node.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Residuals {
     /// Resultant of loads and contact forces along the motions that supports leave free, over the total load.
@@ -24,7 +26,8 @@ pub struct Residuals {
     /// Largest defect of the dissipation, c·|𝓕λ_N|slip| − λ_T·slip| over the square of the load: zero in stick (no
     /// slip) and in aligned slip.
     pub dissipation: f64,
-    /// |(c (B_E u − c_E), λ − Π(λ + c(B u − g)))|₂ over the total load: what the Newton iteration drives to zero.
+    /// |(c (B_E u − c_E), λ − Π(λ + c(B u − g)))|₂ over the load with the solver's own c: what its iteration drives to
+    /// zero.
     pub newton: f64,
 }
 
@@ -37,7 +40,7 @@ impl Residuals {
         )
     }
 
-    /// Refuses a state whose largest residual is above both [`MAX_RESIDUAL`] and four times `allowed`, the Newton
+    /// Refuses a state whose largest residual is above both [`MAX_RESIDUAL`] and ten times `allowed`, the Newton
     /// residual asked for: the other residuals are measured in other norms.
     ///
     /// # Errors
@@ -126,16 +129,17 @@ pub(crate) fn wedging(boundary: &ContactBoundary, jumps: &[f64]) -> Vec<f64> {
     boundary.points.iter().map(of_point).collect()
 }
 
-/// Complementarity, cone and dissipation residuals of packed multipliers and jumps, relative to `load`.
-pub fn law_residuals(
+/// Complementarity, cone and dissipation residuals of packed multipliers, N, and jumps, mm, relative to `load`;
+/// `stiffness`: c per contact node, N/mm.
+pub(super) fn law_residuals(
     boundary: &ContactBoundary,
     forces: &[f64],
     jumps: &[f64],
-    stiffness: f64,
+    stiffness: &[f64],
     load: f64,
 ) -> Residuals {
     let mut residuals = Residuals::default();
-    for point in &boundary.points {
+    for (point, &stiffness) in boundary.points.iter().zip(stiffness) {
         let range = point.rows();
         let (force, jump) = (&forces[range.clone()], &jumps[range]);
         if point.is_tied {

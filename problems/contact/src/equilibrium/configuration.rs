@@ -1,7 +1,8 @@
 //! One shape of a problem before a contact solver works on it.
 
+use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::modes::{Motion, RigidScene};
-use crate::equilibrium::{ContactPoint, ContactProblem, ContactRows, Stage};
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactProblem, ContactRows, Residuals, Stage};
 use crate::error::ContactError;
 use crate::shape::Positions;
 use std::sync::Arc;
@@ -28,7 +29,8 @@ impl Configuration {
     /// The configuration of given controls.
     ///
     /// # Errors
-    /// [`ContactError::InvertedElement`], [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`].
+    /// [`ContactError::InvertedElement`], [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`],
+    /// [`ContactError::TiedRotation`].
     pub fn new(problem: &ContactProblem, controls: &[f64]) -> Result<Self, ContactError> {
         Self::of(problem, problem.positions(controls)?)
     }
@@ -36,12 +38,13 @@ impl Configuration {
     /// The configuration of given positions.
     ///
     /// # Errors
-    /// [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`].
+    /// [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`], [`ContactError::TiedRotation`].
     pub fn of(problem: &ContactProblem, positions: Positions) -> Result<Self, ContactError> {
         Stage::Equilibrium.enter()?;
         let mut rows = problem.rows(&positions)?;
         let rigid = problem.rigid_scene(&positions, &rows);
         let grounded = rigid.analyse(&problem.boundary)?;
+        rigid.check_arms()?;
         let prescribed = problem.largest_prescribed();
         if rigid.total_load() == 0.0 && prescribed == 0.0 {
             let size = |point: &ContactPoint| {
@@ -57,10 +60,55 @@ impl Configuration {
         Ok(Self { positions, rows: Arc::new(rows), rigid, grounded, prescribed })
     }
 
-    /// Force that residuals are relative to, N: the loads, and what a contact stiffness (N/mm) makes of the penetration
-    /// and of the largest displacement that supports prescribe. Zero for bodies at rest.
-    pub fn load(&self, stiffness: f64) -> f64 {
+    /// The residuals of packed contact forces, N, and jumps, mm, whatever solver found them, in units that it has no
+    /// part in; without the residual of its own iteration.
+    pub(crate) fn residuals(&self, problem: &ContactProblem, forces: &[f64], jumps: &[f64]) -> Residuals {
+        let nodes = problem.contact_moduli.iter().zip(&self.rows.nodes);
+        let stiffness: Vec<f64> = nodes.map(|(modulus, node)| modulus * node.area.max(0.0).sqrt()).collect();
+        let unit = self.unit(stiffness.iter().sum::<f64>() / stiffness.len() as f64).of(&problem.boundary, forces);
+        let imbalance = self.rigid.imbalance(&problem.boundary, forces);
+        let equilibrium = if unit > 0.0 { imbalance / unit } else { 0.0 };
+        Residuals { equilibrium, ..law_residuals(&problem.boundary, forces, jumps, &stiffness, unit) }
+    }
+
+    /// What forces are measured by, for the mean stiffness of a contact node, N/mm. Zero for bodies at rest.
+    pub(crate) fn unit(&self, stiffness: f64) -> ForceUnit {
         let penetration: f64 = self.rows.gaps().map(|gap| (-gap).max(0.0)).sum();
-        self.rigid.total_load() + stiffness * (penetration + self.prescribed)
+        ForceUnit { loads: self.rigid.total_load(), approach: stiffness * (penetration + self.prescribed) }
     }
 }
+
+/// What residuals are relative to, N.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ForceUnit {
+    /// Σ|f| over the loads.
+    loads: f64,
+    /// What a contact stiffness makes of the penetration, and of the largest displacement that supports prescribe.
+    approach: f64,
+}
+
+/// Share of the loads that contact forces amount to at least: fewer are few digits of them.
+const LEAST_OF_LOADS: f64 = 1e-4;
+/// The same of what the approach of the bodies would press out of them at rest.
+const LEAST_OF_APPROACH: f64 = 1e-7;
+
+impl ForceUnit {
+    /// The unit before any contact force is known: an upper bound, since motions may take an approach away.
+    pub(crate) fn first(self) -> f64 {
+        self.loads + self.approach
+    }
+
+    /// The unit of packed contact forces, N: their normal parts together.
+    pub(crate) fn of(self, boundary: &ContactBoundary, forces: &[f64]) -> f64 {
+        let normal: f64 = boundary.points.iter().map(|point| forces[point.start].abs()).sum();
+        normal.max(LEAST_OF_LOADS * self.loads).max(LEAST_OF_APPROACH * self.approach)
+    }
+
+    /// The unit of the forces found in a larger one, where it is so much smaller that they have to be found anew.
+    pub(crate) fn finer(self, boundary: &ContactBoundary, forces: &[f64], unit: f64) -> Option<f64> {
+        Some(self.of(boundary, forces)).filter(|finer| *finer < COARSE * unit)
+    }
+}
+
+/// Share of a unit of which a smaller one differs in no digit that matters.
+const COARSE: f64 = 0.3;

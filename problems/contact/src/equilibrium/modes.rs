@@ -65,7 +65,7 @@ pub struct RigidScene {
     pub names: Vec<String>,
     /// Held directions: (body, point in mm, direction).
     pub held: Vec<(usize, [f64; 3], [f64; 3])>,
-    /// Arms of tied nodes, mm, with their body: rotations that turn them are no motions of the discrete body.
+    /// Arms of tied nodes, mm, with their body: a free rotation must not turn them.
     pub arms: Vec<(usize, [f64; 3])>,
     /// Nodal loads: (body, point in mm, force in N).
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
@@ -101,22 +101,36 @@ impl RigidScene {
         parts.iter().map(|part| self.row(part)).fold(DVector::zeros(MOTIONS * self.frames.len()), |sum, row| sum + row)
     }
 
-    /// Whether an arm is more than rounding of the size of its body.
-    fn counts(&self, body: usize, arm: &[f64; 3]) -> bool {
-        arm.iter().any(|part| part.abs() > ARM_ROUNDING * self.frames[body].length)
-    }
-
-    /// The motions that supports and tied nodes of one body leave free, orthonormal.
+    /// The motions that supports of one body leave free, orthonormal.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
         let work = |&(_, point, direction): &RowPart| DVector::from_row_slice(&self.works(body, point, direction));
-        let mut rows: Vec<DVector<f64>> = held.map(work).collect();
-        for (_, arm) in self.arms.iter().filter(|(own, arm)| *own == body && self.counts(body, arm)) {
-            let motions = self.frames[body].motions(Place::Arm(*arm));
-            rows.extend((0..3).map(|axis| DVector::from_iterator(MOTIONS, motions.iter().map(|motion| motion[axis]))));
-        }
-        let free = kernel(&rows, MOTIONS);
+        let free = kernel(&held.map(work).collect::<Vec<_>>(), MOTIONS);
         free.iter().map(|motion| std::array::from_fn(|mode| motion[mode])).collect()
+    }
+
+    /// Refuses bodies with a free rotation that turns an arm: it would be no motion of the discrete body, and what
+    /// holds it would be an error of the discretisation.
+    ///
+    /// # Errors
+    /// [`ContactError::TiedRotation`].
+    pub(crate) fn check_arms(&self) -> Result<(), ContactError> {
+        for body in 0..self.frames.len() {
+            let arms = || self.arms.iter().filter(|(own, _)| *own == body).map(|(_, arm)| *arm);
+            let longest = arms().flatten().fold(0.0, |longest: f64, part| longest.max(part.abs()));
+            if longest <= ARM_ROUNDING * self.frames[body].length {
+                continue;
+            }
+            for motion in self.own_motions(body) {
+                let turned = |arm: [f64; 3]| self.displacement(body, &motion, Place::Arm(arm));
+                if arms().flat_map(turned).any(|moved| moved.abs() > ARM_ROUNDING) {
+                    let mut all = DVector::zeros(MOTIONS * self.frames.len());
+                    all.rows_mut(MOTIONS * body, MOTIONS).copy_from_slice(&motion);
+                    return Err(ContactError::TiedRotation { motion: self.describe(&all), arm: longest });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The work of a force on the six motions of a body.
@@ -128,10 +142,26 @@ impl RigidScene {
     /// Resultant of the loads of a body along one of its motions, N.
     pub(crate) fn resultant(&self, body: usize, motion: &OwnMotion) -> f64 {
         let loads = self.loads.iter().filter(|(loaded, ..)| *loaded == body);
-        let along = |&(_, point, force): &RowPart| -> f64 {
-            self.works(body, point, force).iter().zip(motion).map(|(work, share)| work * share).sum()
+        loads.map(|&(_, point, force)| self.works_along(body, motion, point, force)).sum()
+    }
+
+    /// What loads and packed contact forces, N, leave along the motions that the supports of each body leave free, N.
+    pub(crate) fn imbalance(&self, boundary: &ContactBoundary, forces: &[f64]) -> f64 {
+        let rows = || boundary.points.iter().zip(&self.contact).flat_map(|(point, rows)| point.rows().zip(rows));
+        let left = |body: usize, motion: &OwnMotion| {
+            let jump = |row: &[RowPart]| -> f64 {
+                let own = row.iter().filter(|(own, ..)| *own == body);
+                own.map(|&(_, point, direction)| self.works_along(body, motion, point, direction)).sum()
+            };
+            self.resultant(body, motion) - rows().map(|(index, row)| forces[index] * jump(row)).sum::<f64>()
         };
-        loads.map(along).sum()
+        let of_body = |body: usize| self.own_motions(body).into_iter().map(move |motion| left(body, &motion));
+        (0..self.frames.len()).flat_map(of_body).fold(0.0, f64::hypot)
+    }
+
+    /// The work of a force on a motion of a body.
+    fn works_along(&self, body: usize, motion: &OwnMotion, point: [f64; 3], force: [f64; 3]) -> f64 {
+        self.works(body, point, force).iter().zip(motion).map(|(work, share)| work * share).sum()
     }
 
     /// Displacement of a place of a body in one of its motions.

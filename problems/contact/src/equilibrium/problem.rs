@@ -5,6 +5,7 @@ use crate::body::elasticity::{Formulation, Material};
 use crate::body::loads::nodal_forces;
 use crate::body::mesh::{CellFace, Mesh, smallest_extent};
 use crate::equilibrium::cell_shapes::CellShapes;
+use crate::equilibrium::contact_moduli;
 use crate::equilibrium::contact_part::ContactPart;
 use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows};
@@ -34,6 +35,8 @@ pub struct ContactProblem {
     pub map: Arc<ShapeMap>,
     /// The set of controls that the scene admits.
     pub admissible: AdmissibleSet,
+    /// E* per contact node, MPa.
+    pub(super) contact_moduli: Vec<f64>,
     shapes: Vec<CellShapes>,
     /// The contact rows at the start.
     start_rows: ContactRows,
@@ -63,8 +66,11 @@ impl ContactProblem {
         let shapes = shapes.collect();
         let start_rows = ContactRows { nodes: Vec::new(), pairs: Vec::new(), contact_count: 0 };
         let (bodies, map, geometry) = (Arc::from(bodies), Arc::new(map), ContactGeometry { parts });
-        let mut problem = Self { scene, bodies, boundary, geometry, map, admissible, shapes, start_rows };
+        let contact_moduli = Vec::new();
+        let mut problem =
+            Self { scene, bodies, boundary, geometry, map, admissible, contact_moduli, shapes, start_rows };
         problem.leave_out_held_nodes()?;
+        problem.contact_moduli = contact_moduli::contact_moduli(&problem.bodies, &problem.boundary);
         Ok(problem)
     }
 

@@ -1,6 +1,5 @@
 //! From a shape to its contact forces by TFETI.
 
-use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
     Configuration, ContactForces, ContactProblem, ContactRows, ContactState, ContactWarmStart, Failed, Kink, Residuals,
@@ -160,11 +159,13 @@ impl TotalFeti {
         let grounded = self.model.grounded_amplitudes(&system, &configuration);
         let space = CoarseSpace::new(&self.model, &system, grounded)?;
         let stiffness = STIFFNESS_SHARE * self.flat_or_tall_share() * self.model.contact_stiffness(&system);
-        let load = configuration.load(stiffness);
+        let unit = configuration.unit(stiffness);
+        let load = unit.first();
         seconds.coarse_space = clock.lap();
         Stage::Contact.enter()?;
         let scales = [stiffness, if load > 0.0 { load } else { 1.0 }];
-        let contact = self.contact(&system, &space, &configuration.rows, scales);
+        let mut contact = self.contact(&system, &space, &configuration.rows, scales);
+        contact.unit = Some(unit);
         let work = |newton_steps| Work {
             newton_steps,
             dual_operator_applications: contact.operator.applications(),
@@ -177,9 +178,10 @@ impl TotalFeti {
         seconds.newton = clock.lap() - contact.space.seconds();
         Stage::Recovery.enter()?;
         let (operator, iterate) = (&contact.operator, &solution.iterate);
+        let load = contact.finer(iterate).map_or(load, |(finer, _)| finer.load);
         let loaded = operator.loaded_displacement();
         let displacement = operator.displacement(loaded, &iterate.multipliers, &iterate.amplitudes);
-        let forces = forces(&contact, &solution);
+        let forces = forces(&contact, &solution, &configuration, if load > 0.0 { load } else { contact.load });
         let work = work(solution.steps);
         forces.residuals.check(allowed).map_err(|error| Failed { error: Box::new(error), work })?;
         seconds.recovery = clock.lap();
@@ -228,23 +230,25 @@ impl TotalFeti {
 }
 
 /// The contact forces of a solution in physical units, with certificates by a new product F λ with the last iterate.
-fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
+fn forces(
+    contact: &TornContact<'_>,
+    solution: &TornSolution,
+    configuration: &Configuration,
+    load: f64,
+) -> ContactForces {
     let (boundary, iterate) = (contact.boundary, &solution.iterate);
-    let (mut forces, mut jumps) = (iterate.multipliers.contact().to_vec(), iterate.jumps.contact().to_vec());
     let scales = contact.operator.model.constraints.contact_scales(boundary);
-    for ((force, jump), nu) in forces.iter_mut().zip(&mut jumps).zip(scales) {
-        *force /= nu;
-        *jump *= nu;
-    }
-    let residuals = Residuals {
-        equilibrium: contact.imbalance(&iterate.multipliers),
-        newton: solution.residual,
-        ..law_residuals(boundary, &forces, &jumps, contact.stiffness, contact.load)
-    };
+    let forces = contact.contact_forces(&iterate.multipliers);
+    let jumps: Vec<f64> = iterate.jumps.contact().iter().zip(scales).map(|(jump, nu)| jump * nu).collect();
     let status = boundary.points.iter().zip(&solution.linearizations);
     let status = status.map(|(point, linearization)| linearization.status(point)).collect();
     let kink = Kink::of(boundary, &contact.arguments(iterate));
     let forces = admissible_forces(contact, &forces, &solution.linearizations);
+    let found = configuration.residuals(&contact.operator.model.problem, &forces, &jumps);
+    // Subdomains are in equilibrium as well as bodies.
+    let imbalance = contact.imbalance(&iterate.multipliers) * contact.load / load;
+    let equilibrium = found.equilibrium.max(imbalance);
+    let residuals = Residuals { equilibrium, newton: solution.residual, ..found };
     ContactForces::unpack(boundary, contact.rows, &forces, &jumps, status, residuals, kink)
 }
 

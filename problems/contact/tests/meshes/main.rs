@@ -16,6 +16,7 @@ mod patch;
 mod random;
 mod rotated;
 mod setting;
+mod several_contacts;
 mod tangents;
 mod taylor;
 mod volume;

@@ -4,10 +4,11 @@
 //! w = B u − g = d − Fλ + Gᵀa,    d = B K⁺ f − g,    g: c_E, then the gaps less what supports prescribe
 //! residual:  (c w_E,  λ − Π(λ + c w)),     G λ = e in every iterate
 //! ```
+//! Every contact node may have a compliance of its own, which is part of F then: a problem on the way to the one without.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::{Friction, Linearization};
-use crate::equilibrium::{ContactBoundary, ContactRows};
+use crate::equilibrium::{ContactBoundary, ContactRows, ForceUnit};
 use crate::error::ContactError;
 use crate::linear::sums::Sums;
 use crate::linear::vector::{add_scaled, norm};
@@ -20,7 +21,7 @@ use crate::tfeti::dual::preconditioner::Preconditioner;
 use crate::tfeti::torn::RowVector;
 
 /// Everything that a method works with, for one shape.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct TornContact<'a> {
     /// The dual operator F.
     pub(crate) operator: DualOperator<'a>,
@@ -34,8 +35,12 @@ pub struct TornContact<'a> {
     pub(crate) rows: &'a ContactRows,
     /// The typical stiffness c, N/mm.
     pub(crate) stiffness: f64,
+    /// c times the compliance of each contact node besides that of the bodies; 0 in the problem to be solved.
+    yielding: f64,
     /// Force that residuals are relative to, N.
     pub(crate) load: f64,
+    /// What this force should be once the contact forces are known; none in the problem of a state.
+    pub(crate) unit: Option<ForceUnit>,
     /// Precision of products with search directions.
     pub(crate) precision: Precision,
 }
@@ -55,7 +60,51 @@ impl<'a> TornContact<'a> {
         constant.iter_mut().zip(&constraints.prescribed).for_each(|(jump, prescribed)| *jump -= prescribed);
         let approaches = rows.prescribed_approaches(boundary).into_iter().zip(constraints.contact_scales(boundary));
         constant.contact_mut().iter_mut().zip(approaches).for_each(|(jump, (approach, nu))| *jump += approach / nu);
-        Self { operator, space, preconditioner, boundary, constant, rows, stiffness, load, precision }
+        Self {
+            operator,
+            space,
+            preconditioner,
+            boundary,
+            constant,
+            rows,
+            stiffness,
+            yielding: 0.0,
+            load,
+            unit: None,
+            precision,
+        }
+    }
+
+    /// The problem in a unit of forces that fits those of an iterate, where they are small in the present one, with the
+    /// rigid motions of the iterate, by which the subdomains are moved there: jumps that are differences of large
+    /// displacements have lost the digits that count in a small unit.
+    pub(crate) fn finer(&self, iterate: &Iterate) -> Option<(Self, Vec<f64>)> {
+        let load = self.unit?.finer(self.boundary, &self.contact_forces(&iterate.multipliers), self.load)?;
+        let mut finer = Self { load, unit: None, ..self.clone() };
+        add_scaled(&mut finer.constant, 1.0, &self.space.jumps(&iterate.amplitudes));
+        Some((finer, iterate.amplitudes.clone()))
+    }
+
+    /// The contact forces of multipliers, packed, N.
+    pub(crate) fn contact_forces(&self, multipliers: &RowVector) -> Vec<f64> {
+        let scales = self.operator.model.constraints.contact_scales(self.boundary);
+        multipliers.contact().iter().zip(scales).map(|(multiplier, nu)| multiplier / nu).collect()
+    }
+
+    /// The problem without compliances of its contact nodes, changed by the compliance δ/c of each of them. Its c is
+    /// that of the bodies and the nodes in series.
+    pub(crate) fn yielding(&self, delta: f64) -> Self {
+        let stiffness = self.stiffness / (1.0 + delta);
+        Self { stiffness, yielding: delta / (1.0 + delta), ..self.clone() }
+    }
+
+    /// The product F λ.
+    pub(crate) fn apply(&self, multipliers: &RowVector) -> RowVector {
+        let mut image = self.operator.apply(multipliers);
+        if self.yielding > 0.0 {
+            add_scaled(image.contact_mut(), self.yielding / self.stiffness, multipliers.contact());
+        }
+        image
     }
 
     /// |v|₂ of a vector over rows of B_E, over all rows, or over unknowns of an active set.
@@ -148,7 +197,7 @@ impl<'a> TornContact<'a> {
 
     /// P (Qᵀ F T + Δ) y for unknowns y of an active set, and F T y.
     pub(crate) fn reduced_product(&self, active: &ActiveSet<'_>, unknowns: &[f64]) -> (Vec<f64>, RowVector) {
-        let product = self.operator.apply(&active.rows.trial(unknowns));
+        let product = self.apply(&active.rows.trial(unknowns));
         let mut reduced = active.rows.test_transposed(&product);
         active.rows.add_compliance(unknowns, &mut reduced, 1.0);
         active.project(&mut reduced);
@@ -162,9 +211,14 @@ impl<'a> TornContact<'a> {
         z
     }
 
-    /// (Qᵀ M Q + Z) v.
+    /// (Qᵀ M Q + Z) v. Where contact nodes yield, M has the stiffness of the bodies and the nodes in series.
     pub(crate) fn precondition(&self, rows: &ActiveRows<'_>, v: &[f64]) -> Vec<f64> {
-        let mut z = rows.test_transposed(&self.preconditioner.apply(&rows.test(v)));
+        let share = (1.0 - self.yielding).sqrt();
+        let mut residual = rows.test(v);
+        residual.contact_mut().iter_mut().for_each(|entry| *entry *= share);
+        let mut force = self.preconditioner.apply(&residual);
+        force.contact_mut().iter_mut().for_each(|entry| *entry *= share);
+        let mut z = rows.test_transposed(&force);
         rows.add_spring(v, &mut z);
         z
     }

@@ -7,6 +7,7 @@ use crate::linear::right_side::RightSide;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector, parts_mut};
 use rayon::prelude::*;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Precision of the products with F inside Krylov spaces; residuals and certificates of states are always double.
@@ -21,21 +22,21 @@ pub enum Precision {
     Mixed,
 }
 
-/// The dual operator of one shape; counts its applications.
+/// The dual operator of one shape; counts its applications, those of its clones included.
 #[doc(alias = "Delassus")]
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct DualOperator<'a> {
     /// What does not depend on the shape.
     pub model: &'a TornModel,
     /// The factored subdomains with their loads.
     pub system: &'a TornSystem,
-    applications: AtomicUsize,
+    applications: Arc<AtomicUsize>,
 }
 
 impl<'a> DualOperator<'a> {
     /// The operator of a factored system.
     pub fn new(model: &'a TornModel, system: &'a TornSystem) -> Self {
-        Self { model, system, applications: AtomicUsize::new(0) }
+        Self { model, system, applications: Arc::default() }
     }
 
     /// Products F·x so far, in either precision.

@@ -12,7 +12,7 @@ use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornMo
 use rayon::prelude::*;
 
 /// A preconditioner of one factored system.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Preconditioner<'a> {
     model: &'a TornModel,
     system: &'a TornSystem,

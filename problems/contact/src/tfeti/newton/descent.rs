@@ -102,7 +102,7 @@ pub(crate) fn replace_image(contact: &TornContact<'_>, iterate: &mut Iterate) ->
             active.equilibrate(&mut iterate.multipliers);
         }
     }
-    let image = contact.operator.apply(&iterate.multipliers);
+    let image = contact.apply(&iterate.multipliers);
     *iterate = contact.iterate(iterate.multipliers.clone(), image, std::mem::take(&mut iterate.amplitudes));
     contact.residual(iterate)
 }

@@ -64,7 +64,7 @@ pub(crate) fn linear_solve(
     let allowed = contact.operator.applications().saturating_add(accuracy.max_products);
     for _cycle in 0..accuracy.cycles {
         active.enforce(&mut unknowns, contact.space.resultants());
-        image = contact.operator.apply(&rows.trial(&unknowns));
+        image = contact.apply(&rows.trial(&unknowns));
         let mut projected = reduced_residual(contact, rows, &unknowns, &image);
         active.project(&mut projected);
         let size = contact.norm(&projected);

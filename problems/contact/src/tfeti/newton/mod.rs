@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! start ─▶ iteration ─┬─ descent: one product with F at a time, all directions recycled
-//!                     └─ steps: one linear solve (projected GMRES) per active set, step halving
+//!                     ├─ steps: one linear solve (projected GMRES) per active set, step halving
+//!                     └─ continuation: steps at contact nodes that yield less and less
 //! iterate ─ derivatives ─ holding: an active set that holds every rigid motion
 //! ```
 
+mod continuation;
 mod descent;
 mod holding;
 mod iteration;
@@ -15,6 +17,7 @@ mod rounding;
 mod settings;
 mod stagnation;
 mod start;
+mod steps;
 
 pub use iteration::solve;
 pub use settings::{NewtonSettings, Recycling};

@@ -11,7 +11,7 @@ use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::tangential_norm;
 use crate::equilibrium::{Stage, Work};
 use crate::error::ContactError;
-use crate::linear::vector::norm;
+use crate::linear::vector::{add_scaled, norm};
 use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QpLimits, QuadraticProgram, SeparableSet, Smalse, SmalseSolution,
     StepCounts, WarmStart,
@@ -58,6 +58,23 @@ pub struct AugmentedLagrangianCounts {
 }
 
 impl AugmentedLagrangianCounts {
+    /// The sum of these counts and those of a run before, whose contraction counts.
+    fn after(self, before: Self) -> Self {
+        let [own, other] = [self.steps, before.steps];
+        let steps = StepCounts {
+            cg_steps: own.cg_steps + other.cg_steps,
+            expansion_steps: own.expansion_steps + other.expansion_steps,
+            proportioning_steps: own.proportioning_steps + other.proportioning_steps,
+            refreshed_gradients: own.refreshed_gradients + other.refreshed_gradients,
+        };
+        Self {
+            fixed_point_steps: self.fixed_point_steps + before.fixed_point_steps,
+            outer: self.outer + before.outer,
+            steps,
+            contraction: before.contraction,
+        }
+    }
+
     /// The counts in the record that all contact solvers share.
     pub fn added_to(&self, work: Work) -> Work {
         Work {
@@ -137,6 +154,12 @@ pub fn solve_by_successive_approximations(
             iterations: history.len(),
             history,
         });
+    }
+    // Motions of the bodies have taken an approach away that the unit of forces counts.
+    if let Some((finer, moved)) = contact.finer(&iterate) {
+        let (mut solution, counts) = solve_by_successive_approximations(&finer, Some(&state.warm.x), settings)?;
+        add_scaled(&mut solution.iterate.amplitudes, 1.0, &moved);
+        return Ok((solution, counts.after(state.counts)));
     }
     Ok((contact.solution(iterate, residual, state.counts.fixed_point_steps), state.counts))
 }

@@ -101,7 +101,8 @@ impl SubdomainFactors {
     /// `interior`: class to factor for the Dirichlet preconditioner.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails.
+    /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails,
+    /// [`ContactError::ResistsRigidMotions`].
     pub fn new(
         (body, piece): (&Body, &Piece),
         symbolic: &Arc<SymbolicFactor>,
@@ -110,6 +111,7 @@ impl SubdomainFactors {
     ) -> Result<Self, ContactError> {
         let pattern = &*piece.pattern;
         let stiffness = piece.assemble(&body.solid, positions, |material| *material);
+        piece.check_kernel(&body.solid, &body.name, positions, &stiffness)?;
         let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
         let is_near = body.solid.materials().iter().any(|material| material.compressible_neighbour().is_some());
         let compressible = is_near.then(|| piece.assemble(&body.solid, positions, near));
