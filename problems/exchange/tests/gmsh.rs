@@ -3,8 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-use exchange::gmsh::{CellKind, FacetKind, GmshMesh, NodeData, read, write, write_with_data};
-use std::collections::BTreeMap;
+use exchange::gmsh::{
+    CellKind, FacetKind, GmshCell, GmshFacet, GmshMesh, NodeData, Repeated, read, write, write_with_data,
+};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// A file by its path in the folder `problems`.
@@ -64,6 +67,87 @@ fn text_and_binary_files_of_gmsh_hold_one_mesh() {
     assert!(heights("horizontal").iter().all(|height| [0.0, 1.0].contains(height)));
     assert!(heights("30").iter().all(|height| [1.0, 1.5].contains(height)));
     assert!(mesh.node_groups["edge"].iter().all(|&id| mesh.nodes[id][1] == 0.0 || mesh.nodes[id][0] == 1.0));
+}
+
+/// In version 2.2 an element stands once for each of its groups, and Gmsh leaves out what is in none.
+#[test]
+fn version_2_has_the_groups_of_version_4() {
+    let four = read(&file("exchange/tests/data/two_blocks.msh")).unwrap();
+    let listed = read(&file("exchange/tests/data/two_blocks_2.msh")).unwrap();
+    assert_eq!(listed, read(&file("exchange/tests/data/two_blocks_2_binary.msh")).unwrap());
+    assert_eq!((listed.cells.len(), listed.facets.len()), (24, 20));
+    let (merged, repeated) = listed.merged();
+    assert_eq!((repeated.cells, repeated.facets), (12, 4));
+    assert_eq!((merged.nodes.len(), merged.cells.len(), merged.facets.len()), (36, 12, 16));
+    assert_eq!(sizes(&merged.volumes), sizes(&four.volumes));
+    assert_eq!(sizes(&merged.surfaces), sizes(&four.surfaces));
+    assert_eq!(sizes(&merged.node_groups), sizes(&four.node_groups));
+    assert_eq!(merged.group_tags, four.group_tags);
+    // The groups hold the same places.
+    let centres = |mesh: &GmshMesh, name: &str| {
+        let mean = |nodes: &[usize]| {
+            let sum = |axis: usize| nodes.iter().map(|&id| mesh.nodes[id][axis]).sum::<f64>();
+            [0, 1, 2].map(|axis| (1e6 * sum(axis) / nodes.len() as f64).round() as i64)
+        };
+        let facets = mesh.surfaces.get(name).into_iter().flatten().map(|&facet| mean(&mesh.facets[facet].nodes));
+        let cells = mesh.volumes.get(name).into_iter().flatten().map(|&cell| mean(&mesh.cells[cell].nodes));
+        let nodes = mesh.node_groups.get(name).into_iter().flatten().map(|&id| mean(&[id]));
+        facets.chain(cells).chain(nodes).collect::<BTreeSet<_>>()
+    };
+    for (_, name) in four.group_tags.keys() {
+        assert_eq!(centres(&merged, name), centres(&four, name), "{name}");
+        assert!(!centres(&four, name).is_empty(), "{name}");
+    }
+}
+
+/// Gmsh repeats the mesh where it appends a view.
+#[test]
+fn a_view_behind_a_mesh_is_skipped() {
+    let mesh = read(&file("exchange/tests/data/box.msh")).unwrap();
+    assert_eq!(read(&file("exchange/tests/data/box_view.msh")).unwrap(), mesh);
+    // One without a mesh of its own, and one of the other version behind a binary mesh.
+    let view = b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"$Nodes\"\n$EndNodeData\n";
+    for binary in [false, true] {
+        let bytes = [&write(&mesh, binary).unwrap()[..], view].concat();
+        assert_eq!(read(&bytes).unwrap(), mesh);
+    }
+}
+
+/// Whatever the order of their nodes: facets are equal by their corners, cells by all their nodes.
+#[test]
+fn what_is_listed_more_than_once_is_merged_into_all_its_groups() {
+    let once = read(&file("scenes/lug_tet10.msh")).unwrap();
+    assert_eq!(once.merged(), (Cow::Borrowed(&once), Repeated::default()));
+    let mut mesh = once.clone();
+    let tag = |mesh: &GmshMesh| (mesh.facets.len() + mesh.cells.len() + 1) as u64;
+    for turned in [[0, 1, 2, 3, 4, 5], [1, 2, 0, 4, 5, 3], [0, 2, 1, 5, 4, 3]] {
+        let nodes = turned.map(|place| once.facets[7].nodes[place]).to_vec();
+        mesh.facets.push(GmshFacet { kind: FacetKind::Tri6, nodes, tag: tag(&mesh) });
+    }
+    let corners = once.facets[8].nodes[..3].to_vec();
+    mesh.facets.push(GmshFacet { kind: FacetKind::Tri3, nodes: corners, tag: tag(&mesh) });
+    let nodes = [1, 2, 0, 3, 5, 6, 4, 9, 7, 8].map(|place| once.cells[5].nodes[place]).to_vec();
+    mesh.cells.push(GmshCell { kind: CellKind::Tet10, nodes, tag: tag(&mesh) });
+    mesh.surfaces.insert("again".into(), (992..996).collect());
+    mesh.volumes.insert("again".into(), vec![1881]);
+    let (merged, repeated) = mesh.merged();
+    assert_eq!((repeated.facets, repeated.cells), (2, 1));
+    assert_eq!((&merged.facets, &merged.cells), (&once.facets, &once.cells));
+    assert_eq!((&merged.surfaces["again"], &merged.volumes["again"]), (&vec![7, 8], &vec![5]));
+    assert_eq!(merged.surfaces["hole"], once.surfaces["hole"]);
+}
+
+#[test]
+fn groups_keep_their_tags() {
+    let mut mesh = read(TETRAHEDRON.as_bytes()).unwrap();
+    let tags: Vec<u32> = mesh.group_tags.values().copied().collect();
+    assert_eq!(tags, [1, 5, 6, 4, 2]);
+    mesh.group_tags.insert((2, "base".into()), 77);
+    mesh.group_tags.remove(&(3, "body".into()));
+    let again = read(&write(&mesh, true).unwrap()).unwrap();
+    assert_eq!(again.group_tags[&(2, "base".into())], 77);
+    // A free one.
+    assert_eq!(again.group_tags[&(3, "body".into())], 2);
 }
 
 #[test]
@@ -181,6 +265,8 @@ fn a_mesh_that_makes_no_file_is_not_written() {
     refused(&|mesh| mesh.cells.clear(), "number of cells is 0; allowed: at least 1");
     refused(&|mesh| mesh.node_tags.truncate(3), "number of node tags is 3; allowed: 4");
     let many = |mesh: &mut GmshMesh| (0..33).for_each(|group| _ = mesh.volumes.insert(format!("{group}"), vec![0]));
+    let twice = |mesh: &mut GmshMesh| _ = mesh.group_tags.insert((2, "base".into()), 5);
+    refused(&twice, "tag of group base is 5; allowed: numbers from 1 to 2^31 - 1, each once per dimension");
     refused(&many, "number of groups with member 0 is 33; allowed: at most 32");
     refused(&|mesh| _ = mesh.volumes.insert("x".into(), vec![1]), "member of group x is 1; allowed: numbers below 1");
     refused(&|mesh| _ = mesh.surfaces.insert("a\nb".into(), vec![]), "name of group \"a\\nb\"");

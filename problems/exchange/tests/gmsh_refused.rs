@@ -11,21 +11,21 @@ const TETRAHEDRON: &str = include_str!("data/tetrahedron.msh");
 const TEXT: &[u8] = include_bytes!("data/two_blocks.msh");
 const BINARY: &[u8] = include_bytes!("data/two_blocks_binary.msh");
 
+/// Their groups in version 2.2.
+const TEXT_2: &str = include_str!("data/two_blocks_2.msh");
+const BINARY_2: &[u8] = include_bytes!("data/two_blocks_2_binary.msh");
+
 /// One change of the tetrahedron → the beginning of the message.
 const REFUSED: [(&str, &str, &str); 53] = [
     ("$MeshFormat", "$Mesh", "line 1: the first line is $Mesh; allowed: $MeshFormat"),
-    ("4.1 0", "2.2 0", "line 2: the version of the file is 2.2; allowed: 4.1; save it as version 4.1"),
-    ("4.1 0", "4 0", "line 2: the version of the file is 4.0; allowed: 4.1; save it as version 4.1"),
+    ("4.1 0", "2.2 0", "line 20: the tag of a node is 0; allowed: whole numbers from 1"),
+    ("4.1 0", "4 0", "line 2: the version of the file is 4.0; allowed: 4.1, 2.2"),
     ("4.1 0", "4.2 0", "line 2: the version of the file is 4.2"),
     ("4.1 0", "x 0", "line 2: the version is x; allowed: 4.1"),
     ("4.1 0", "4.1 2", "line 2: the file type (0: text, 1: binary) is 2; allowed: whole numbers from 0 to 1"),
-    ("0 8", "0 4", "line 2: the size of a number in bytes is 4; allowed: whole numbers from 8 to 8"),
+    ("0 8", "0 4", "line 2: the size of a number in bytes is 4; allowed: 8"),
     ("0 8", "0 8 8", "line 2: what follows the contents of a section is 8; allowed: $EndMeshFormat"),
-    (
-        "$EndMeshFormat\n",
-        "$EndMeshFormat\n$MeshFormat\n",
-        "line 4: a section is $MeshFormat; allowed: one that has not",
-    ),
+    ("$EndMeshFormat\n", "$EndMeshFormat\n$MeshFormat\n", "line 5: the version is $PhysicalNames; allowed: 4.1, 2.2"),
     ("$PhysicalNames\n3", "$PhysicalNames\n4", "line 9: the dimension of a physical group is $EndPhysicalNames"),
     ("$PhysicalNames\n3", "$PhysicalNames\n2", "line 8: what follows the contents of a section is 3 2 \"body\""),
     ("$PhysicalNames\n3", "$PhysicalNames\n-3", "line 5: the number of physical names is -3"),
@@ -163,6 +163,45 @@ fn element_types_that_are_not_read_are_refused_by_name() {
 }
 
 #[test]
+fn wrong_items_of_version_2_are_named() {
+    let line = |words: &str| 1 + TEXT_2.lines().position(|line| line == words).unwrap();
+    let (element, facet) = ("3 1 2 4 1 1 13", "9 3 2 1 1 1 13 29 16");
+    let (at, under) = (line(element), line(facet));
+    for (old, new, expected) in [
+        ("\n36\n", "\n37\n", "line 51: the tag of a node is $EndNodes; allowed: whole numbers of 32 bits".into()),
+        ("\n36\n", "\n35\n", "line 50: what follows the contents of a section is 36 ".into()),
+        ("\n2 1 0 0\n", "\n1 1 0 0\n", "line 16: the tag of a node is 1; allowed: one that has not".into()),
+        ("\n2 1 0 0\n", "\n0 1 0 0\n", "line 16: the tag of a node is 0; allowed: whole numbers from 1".into()),
+        (element, "3 1 2 4 1 1", format!("line {}: ", at + 1)),
+        (element, "2 1 2 4 1 1 13", format!("line {at}: the tag of an element is 2; allowed: one that has not")),
+        (element, "3 1 -1 4 1 1 13", format!("line {at}: the number of tags of an element is -1; allowed: whole")),
+        (element, "3 7 2 4 1 1 13", format!("line {at}: elements of type 7 (pyramid5); allowed: hex8, tet4")),
+        (element, "3 1 2 4 1 1 77", "element 3: node 77 is unknown; allowed: nodes of $Nodes".into()),
+        (facet, "9 3 2 -2147483648 1 1 13 29 16", format!("line {under}: the physical group of an element is -2147")),
+    ] {
+        assert!(TEXT_2.contains(old), "{old}");
+        assert_refused(TEXT_2.replacen(old, new, 1).as_bytes(), &expected);
+    }
+    let elements = BINARY_2.windows(10).position(|bytes| bytes == b"$Elements\n").unwrap() + 13;
+    for (count, range) in [(0_i32, "1 to 52"), (53, "1 to 52")] {
+        let mut bytes = BINARY_2.to_vec();
+        bytes[elements + 4..elements + 8].copy_from_slice(&count.to_le_bytes());
+        let place = elements + 4;
+        let words =
+            format!("byte {place}: the number of elements of one type is {count}; allowed: whole numbers from {range}");
+        assert_refused(&bytes, &words);
+    }
+}
+
+#[test]
+fn a_second_mesh_must_be_the_first_one() {
+    let again = [TETRAHEDRON, TETRAHEDRON].concat();
+    assert_eq!(read(again.as_bytes()), read(TETRAHEDRON.as_bytes()));
+    let other = [TETRAHEDRON, &TETRAHEDRON.replacen("0 0 1\n2 1 1 4", "0 0 2\n2 1 1 4", 1)].concat();
+    assert_refused(other.as_bytes(), "line 87: the mesh after a second $MeshFormat is another one; allowed: the mesh");
+}
+
+#[test]
 fn binary_files_name_bytes() {
     for (length, expected) in [
         (21, "byte 21: the file ends there; the number that tells the byte order must follow"),
@@ -257,7 +296,7 @@ fn has_place(message: &str) -> bool {
 fn refused_of(damages: usize, seed: u64) -> usize {
     let (mut random, mut refused) = (Random(seed), 0);
     for index in 0..damages {
-        let file = [TEXT, BINARY, TETRAHEDRON.as_bytes()][index % 3];
+        let file = [TEXT, BINARY, TETRAHEDRON.as_bytes(), TEXT_2.as_bytes(), BINARY_2][index % 5];
         let mut bytes = damaged(file, &mut random);
         while random.below(4) == 0 {
             bytes = damaged(&bytes, &mut random);

@@ -19,6 +19,7 @@ mod grid_file;
 mod lattice;
 mod limit;
 mod load_case;
+mod mesh_check;
 mod mesh_file;
 mod objective;
 mod parts;

@@ -2,17 +2,16 @@
 //! any work.
 
 use crate::UnitName;
-use contact::body::mesh::{CellFace, CellKind, Mesh};
+use crate::mesh_check::{self, EDGES, check_cells, check_parts};
+use contact::body::mesh::{CellKind, Mesh, SharedFace};
 use contact::error::SceneError;
-use exchange::gmsh::{self, GmshMesh};
+use exchange::gmsh::{self, GmshFacet, GmshMesh, Repeated};
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 4 << 30;
-/// Scaled Jacobian below which a cell is told of.
-const POOR: f64 = 0.2;
 
 /// A mesh with what is to be said of it.
 #[derive(Debug)]
@@ -21,14 +20,11 @@ pub(crate) struct MeshFile {
     pub notes: Vec<String>,
 }
 
-/// Edges of a tetrahedron in Gmsh's order of their middles.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
-
 /// Reads a Gmsh file as a body.
 ///
 /// # Errors
 /// [`SceneError::File`] for a file that cannot be read and for what the format does not allow; [`SceneError::InFile`]
-/// for cells that are inverted, a body in several parts, and surfaces that are no faces of cells.
+/// for cells that are inverted or overlap, a body in several parts, and surfaces that are no faces of cells.
 pub(crate) fn read(file: &Path, unit: UnitName) -> Result<MeshFile, SceneError> {
     let path = file.display().to_string();
     let failed = |reason: String| SceneError::File { path: path.clone(), reason };
@@ -47,6 +43,8 @@ pub(crate) fn read(file: &Path, unit: UnitName) -> Result<MeshFile, SceneError> 
 /// # Errors
 /// As [`read`], without the name of the file.
 pub(crate) fn convert(gmsh: &GmshMesh, unit: UnitName, name: &str) -> Result<MeshFile, SceneError> {
+    let (gmsh, repeated) = gmsh.merged();
+    let gmsh = &*gmsh;
     let factor = unit.millimetres();
     let mut nodes: Vec<[f64; 3]> = gmsh.nodes.iter().map(|x| x.map(|x| factor * x)).collect();
     let (mut middles, mut cells) = (HashMap::new(), Vec::with_capacity(gmsh.cells.len()));
@@ -68,14 +66,31 @@ pub(crate) fn convert(gmsh: &GmshMesh, unit: UnitName, name: &str) -> Result<Mes
             "{name}: tet4 cells got {count} nodes in the middles of their edges and are tet10 cells now"
         ));
     }
+    notes.extend(note_of_repeated(repeated).map(|words| format!("{name}: {words}")));
     let mesh = Mesh::new(nodes, cells)?;
     check_cells(gmsh, &mesh, &mut notes, name)?;
+    let faces = mesh_check::faces(gmsh, &mesh)?;
     check_parts(gmsh, &mesh)?;
     let mesh = with_volumes(gmsh, mesh)?;
-    let mesh = with_surfaces(gmsh, mesh, &mut notes, name)?;
-    let narrow = |nodes: &Vec<usize>| nodes.iter().map(|&node| node as u32).collect();
-    let mesh = gmsh.node_groups.iter().try_fold(mesh, |mesh, (name, nodes)| mesh.with_node_set(name, narrow(nodes)))?;
+    let mesh = with_node_groups(gmsh, mesh)?;
+    let mesh = with_surfaces(gmsh, mesh, &faces, &mut notes, name)?;
+    let mesh = mesh.with_group_tags(gmsh.group_tags.clone());
     Ok(MeshFile { mesh, notes })
+}
+
+/// What is said of facets and cells that were listed more than once.
+fn note_of_repeated(repeated: Repeated) -> Option<String> {
+    let counted = |count: usize, one: &str, many: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        _ => Some(format!("{count} {many}")),
+    };
+    let counts = [counted(repeated.facets, "facet", "facets"), counted(repeated.cells, "cell", "cells")];
+    let counts: Vec<String> = counts.into_iter().flatten().collect();
+    let verb = if repeated.facets + repeated.cells == 1 { "is" } else { "are" };
+    let words =
+        || format!("{} {verb} listed more than once; each counts once, in all its groups", counts.join(" and "));
+    (!counts.is_empty()).then(words)
 }
 
 /// The node in the middle of an edge.
@@ -110,50 +125,6 @@ fn description(gmsh: &GmshMesh, nodes: &[[f64; 3]], name: &str, unit: UnitName) 
     )
 }
 
-/// Refuses inverted cells, and tells of the worst shaped one.
-fn check_cells(gmsh: &GmshMesh, mesh: &Mesh, notes: &mut Vec<String>, name: &str) -> Result<(), SceneError> {
-    let (mut worst, mut poor) = ((f64::INFINITY, 0), 0);
-    let mut inverted = Vec::new();
-    for cell in 0..mesh.cell_count() {
-        let nodes = mesh.cell_nodes(cell, mesh.nodes());
-        let determinant = nodes.smallest_determinant();
-        if !(determinant > 0.0 && determinant.is_finite()) {
-            inverted.push(cell);
-            continue;
-        }
-        let quality = nodes.scaled_jacobian();
-        worst = if quality < worst.0 { (quality, cell) } else { worst };
-        poor += usize::from(quality < POOR);
-    }
-    if let Some(&first) = inverted.first() {
-        let value = format!("an inverted or flat cell (element {}, {} in all)", gmsh.cells[first].tag, inverted.len());
-        return Err(SceneError::out_of_range("cells", value, "cells of positive volume at every integration point"));
-    }
-    if poor > 0 {
-        let tag = gmsh.cells[worst.1].tag;
-        notes.push(format!(
-            "{name}: {poor} cells have a scaled Jacobian below {POOR}; the worst is {:.3} at element {tag}",
-            worst.0
-        ));
-    }
-    Ok(())
-}
-
-/// Refuses a mesh that falls into parts.
-fn check_parts(gmsh: &GmshMesh, mesh: &Mesh) -> Result<(), SceneError> {
-    let parts = mesh.parts();
-    let [_, second, ..] = &parts[..] else { return Ok(()) };
-    let [x1, x2, x3] = mesh.centre(second[0] as usize, mesh.nodes());
-    let value = format!(
-        "{} parts; the second one has {} cells, with element {} at ({x1:.4}, {x2:.4}, {x3:.4}) mm",
-        parts.len(),
-        second.len(),
-        gmsh.cells[second[0] as usize].tag
-    );
-    let allowed = "one body, whose cells hang together by common faces (merge duplicate nodes in Gmsh)";
-    Err(SceneError::out_of_range("mesh", value, allowed))
-}
-
 /// Gives every cell its volume: the first physical group that it is in.
 fn with_volumes(gmsh: &GmshMesh, mesh: Mesh) -> Result<Mesh, SceneError> {
     if gmsh.volumes.is_empty() {
@@ -180,33 +151,53 @@ fn with_volumes(gmsh: &GmshMesh, mesh: Mesh) -> Result<Mesh, SceneError> {
     mesh.with_volumes(names, volume_of.into_iter().map(|volume| volume.unwrap_or(rest)).collect())
 }
 
+fn with_node_groups(gmsh: &GmshMesh, mesh: Mesh) -> Result<Mesh, SceneError> {
+    let narrow = |nodes: &[usize]| nodes.iter().map(|&node| node as u32).collect();
+    gmsh.node_groups.iter().try_fold(mesh, |mesh, (name, nodes)| mesh.with_node_set(name, narrow(nodes)))
+}
+
 /// Gives names to the faces of cells on which surface elements lie. Where these lie between cells, the name is one of
 /// nodes.
-fn with_surfaces(gmsh: &GmshMesh, mut mesh: Mesh, notes: &mut Vec<String>, name: &str) -> Result<Mesh, SceneError> {
-    let skin = mesh.skin_by_corners();
+fn with_surfaces(
+    gmsh: &GmshMesh,
+    mut mesh: Mesh,
+    faces: &HashMap<[u32; 4], SharedFace>,
+    notes: &mut Vec<String>,
+    name: &str,
+) -> Result<Mesh, SceneError> {
     for (surface, facets) in &gmsh.surfaces {
-        let corners = |facet: usize| {
-            let facet = &gmsh.facets[facet];
-            let count = if facet.kind == gmsh::FacetKind::Quad4 { 4 } else { 3 };
-            let mut key = [u32::MAX; 4];
-            facet.nodes[..count].iter().zip(&mut key).for_each(|(node, key)| *key = *node as u32);
-            key.sort_unstable();
-            key
-        };
-        let faces: Vec<Option<CellFace>> = facets.iter().map(|&facet| skin.get(&corners(facet)).copied()).collect();
-        let outside = faces.iter().flatten().count();
-        if outside == facets.len() {
-            mesh = mesh.with_face(surface, faces.into_iter().flatten().collect())?;
-        } else if outside == 0 {
-            let nodes = facets.iter().flat_map(|&facet| &gmsh.facets[facet].nodes).map(|&node| node as u32).collect();
-            mesh = mesh.with_node_set(surface, nodes)?;
-            notes.push(format!("{name}: the surface \"{surface}\" lies between cells: it is a set of nodes, no face"));
-        } else {
-            let first = faces.iter().position(Option::is_none).unwrap_or(0);
+        let field = || format!("physical surface \"{surface}\"");
+        let mut found = Vec::with_capacity(facets.len());
+        for facet in facets.iter().map(|&facet| &gmsh.facets[facet]) {
+            let face = faces.get(&corners(facet)).ok_or_else(|| {
+                let value = format!("element {}, which is no face of a cell", facet.tag);
+                SceneError::out_of_range(field(), value, "faces of cells")
+            })?;
+            found.push(face);
+        }
+        let inner = found.iter().filter(|face| face.second.is_some()).count();
+        if inner > 0 && inner < found.len() {
+            let first = found.iter().position(|face| face.second.is_some()).unwrap_or(0);
+            let outside = found.len() - inner;
             let value = format!("element {} among {outside} faces of the skin", gmsh.facets[facets[first]].tag);
-            let field = format!("physical surface \"{surface}\"");
-            return Err(SceneError::out_of_range(field, value, "outer faces of cells alone, or inner ones alone"));
+            return Err(SceneError::out_of_range(field(), value, "outer faces of cells alone, or inner ones alone"));
+        }
+        let first_cells = found.iter().map(|face| face.first).collect();
+        if inner == 0 {
+            mesh = mesh.with_face(surface, first_cells)?;
+        } else {
+            mesh = mesh.with_inner_face(surface, first_cells)?;
+            notes.push(format!("{name}: the surface \"{surface}\" lies between cells: it is a set of nodes, no face"));
         }
     }
     Ok(mesh)
+}
+
+/// The corners of a facet, ascending; the fourth one of a triangle is the largest number.
+fn corners(facet: &GmshFacet) -> [u32; 4] {
+    let count = if facet.kind == gmsh::FacetKind::Quad4 { 4 } else { 3 };
+    let mut key = [u32::MAX; 4];
+    facet.nodes[..count].iter().zip(&mut key).for_each(|(node, key)| *key = *node as u32);
+    key.sort_unstable();
+    key
 }

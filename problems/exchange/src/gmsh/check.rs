@@ -29,7 +29,19 @@ pub(super) fn check(mesh: &GmshMesh, data: &[NodeData]) -> Result<(), GmshError>
     for name in mesh.volumes.keys().chain(mesh.surfaces.keys()).chain(mesh.node_groups.keys()) {
         printable("name of group", name)?;
     }
+    check_group_tags(mesh)?;
     data.iter().try_for_each(|field| check_data(field, mesh))
+}
+
+fn check_group_tags(mesh: &GmshMesh) -> Result<(), GmshError> {
+    let mut seen = HashSet::new();
+    for ((dimension, name), &tag) in &mesh.group_tags {
+        if tag == 0 || i32::try_from(tag).is_err() || !seen.insert((dimension, tag)) {
+            let allowed = "numbers from 1 to 2^31 - 1, each once per dimension";
+            return Err(refused("tag of group", name, tag, allowed));
+        }
+    }
+    Ok(())
 }
 
 /// Tags of all facets and cells.

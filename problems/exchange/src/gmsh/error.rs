@@ -39,14 +39,15 @@ pub enum GmshError {
     },
     /// Elements of a type that is not read.
     #[error(
-        "{place}: entity {entity} has elements of type {number} ({name}); allowed: hex8, tet4, tet10, their faces \
-         quad4, tri3 and tri6, lines and points"
+        "{place}: {}elements of type {number} ({name}); allowed: hex8, tet4, tet10, their faces quad4, tri3 and tri6, \
+         lines and points",
+        entity.map_or_else(String::new, |entity| format!("entity {entity} has "))
     )]
     ElementType {
         /// Where the type stands.
         place: Place,
-        /// Tag of the entity.
-        entity: i32,
+        /// Tag of the entity, where elements have it in common.
+        entity: Option<i32>,
         /// Gmsh's number of the type.
         number: i32,
         /// Name of the type.

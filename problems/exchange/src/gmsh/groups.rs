@@ -1,7 +1,7 @@
 //! Physical groups while a file is read.
 
 use crate::gmsh::error::GmshError;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// (dimension, tag) of a physical group.
@@ -37,6 +37,30 @@ impl Groups {
     /// The name of a group: its tag if the file gives none.
     pub(super) fn name_of(&self, key: Key) -> String {
         self.names.get(&key).cloned().unwrap_or_else(|| key.1.to_string())
+    }
+
+    /// Tags of the groups by dimension and name. Groups of points and of lines become groups of nodes: where two of these
+    /// have one tag, the second one gets a free one.
+    pub(super) fn tags(&self) -> BTreeMap<(usize, String), u32> {
+        let (mut tags, mut used, mut others) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
+        for &key in self.members.keys() {
+            let (dimension, tag) = (if key.0 < 2 { 0 } else { key.0 }, key.1);
+            let name = (dimension, self.name_of(key));
+            if tags.contains_key(&name) {
+                continue;
+            }
+            match used.insert((dimension, tag)) {
+                true => _ = tags.insert(name, tag),
+                false => others.push(name),
+            }
+        }
+        let mut free = (1..).filter(|tag| !used.contains(&(0, *tag)));
+        for name in others {
+            if !tags.contains_key(&name) {
+                tags.extend(free.next().map(|tag| (name, tag)));
+            }
+        }
+        tags
     }
 
     /// The groups of some dimensions by name, members ascending. Groups of different dimensions may share a name.

@@ -1,10 +1,10 @@
 //! Entities and blocks of the file that holds a mesh.
 
 use crate::gmsh::check::{element_tags, refused};
+use crate::gmsh::contents::MAX_GROUPS;
 use crate::gmsh::elements::ElementKind;
 use crate::gmsh::error::GmshError;
 use crate::gmsh::mesh::GmshMesh;
-use crate::gmsh::sections::MAX_GROUPS;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What a file states about physical groups and elements.
@@ -44,9 +44,11 @@ impl<'m> Layout<'m> {
     /// The layout of a mesh: points of the groups of nodes, facets, cells.
     pub(super) fn new(mesh: &'m GmshMesh) -> Result<Self, GmshError> {
         let mut layout = Self::default();
-        let node_groups = layout.groups_of(0, mesh.nodes.len(), &mesh.node_groups)?;
-        let facet_groups = layout.groups_of(2, mesh.facets.len(), &mesh.surfaces)?;
-        let cell_groups = layout.groups_of(3, mesh.cells.len(), &mesh.volumes)?;
+        let own: HashSet<u32> = mesh.group_tags.values().copied().collect();
+        let mut free = (1..=i32::MAX).filter(|tag| !own.contains(&tag.unsigned_abs()));
+        let node_groups = layout.groups_of(mesh, (0, mesh.nodes.len()), &mesh.node_groups, &mut free)?;
+        let facet_groups = layout.groups_of(mesh, (2, mesh.facets.len()), &mesh.surfaces, &mut free)?;
+        let cell_groups = layout.groups_of(mesh, (3, mesh.cells.len()), &mesh.volumes, &mut free)?;
         // Points become elements, whose tags must be free.
         let used: HashSet<u64> = element_tags(mesh).collect();
         let free = (1..).filter(|tag| !used.contains(tag));
@@ -63,17 +65,19 @@ impl<'m> Layout<'m> {
         Ok(layout)
     }
 
-    /// Numbers the groups of a dimension, and lists those of each of its `count` members.
+    /// Numbers the groups of a dimension that have no tag, and lists those of each of its `count` members.
     fn groups_of(
         &mut self,
-        dimension: usize,
-        count: usize,
+        mesh: &GmshMesh,
+        (dimension, count): (usize, usize),
         groups: &'m BTreeMap<String, Vec<usize>>,
+        free: &mut impl Iterator<Item = i32>,
     ) -> Result<Vec<Vec<i32>>, GmshError> {
         let mut of_member = vec![Vec::new(); count];
         for (name, members) in groups {
-            // Tags begin with 1. More groups than 32 bits can count do not fit into memory.
-            let tag = self.names.len() as i32 + 1;
+            let own = mesh.group_tags.get(&(dimension, name.clone()));
+            // Tags beyond 32 bits were refused, and as many groups do not fit into memory.
+            let Some(tag) = own.map(|tag| *tag as i32).or_else(|| free.next()) else { break };
             self.names.push((dimension, tag, name));
             for &member in members {
                 let Some(tags) = of_member.get_mut(member) else {

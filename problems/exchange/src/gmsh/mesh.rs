@@ -22,6 +22,9 @@ pub struct GmshMesh {
     /// Physical groups of dimension 0 and 1: name → ids of nodes, ascending. A group of points and a group of lines
     /// that have one name are one group.
     pub node_groups: BTreeMap<String, Vec<usize>>,
+    /// Tags of physical groups by dimension (0 for those of nodes) and name: positive, each once per dimension. A group
+    /// without one gets a free tag when it is written.
+    pub group_tags: BTreeMap<(usize, String), u32>,
 }
 
 /// A volume element.

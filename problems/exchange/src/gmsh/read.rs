@@ -1,26 +1,45 @@
 //! A Gmsh file read as a mesh.
 
+use crate::gmsh::contents::Contents;
 use crate::gmsh::elements::ElementKind;
 use crate::gmsh::error::GmshError;
 use crate::gmsh::mesh::{GmshCell, GmshFacet, GmshMesh};
-use crate::gmsh::sections::{Contents, contents};
+use crate::gmsh::sections::{Part, first_line, part};
 use crate::gmsh::source::Source;
 use std::collections::{HashMap, HashSet};
 
-/// Reads a Gmsh file of version 4.1, text or binary in either byte order.
+/// Reads a Gmsh file of version 4.1 or 2.2, text or binary in either byte order.
 ///
 /// # Errors
 /// [`GmshError`] for another version, a partitioned mesh, elements other than those of [`GmshMesh`], lines and points,
-/// a file that is damaged or contradicts itself, a mesh without volume elements, and elements of physical groups on
-/// nodes that no volume element uses.
+/// a file that is damaged or contradicts itself, a second mesh that differs from the first one, a mesh without volume
+/// elements, and elements of physical groups on nodes that no volume element uses.
 pub fn read(bytes: &[u8]) -> Result<GmshMesh, GmshError> {
     let mut source = Source::new(bytes);
-    let contents = contents(&mut source)?;
-    let used = used_nodes(&contents)?;
-    if used.is_empty() {
-        return Err(GmshError::Missing { place: source.place(), what: "volume elements (hex8, tet4, tet10)" });
+    first_line(&mut source)?;
+    let mut mesh = None;
+    loop {
+        let Part { contents, has_mesh, is_followed } = part(&mut source)?;
+        if has_mesh {
+            let used = used_nodes(&contents)?;
+            if used.is_empty() {
+                return Err(GmshError::Missing { place: source.place(), what: "volume elements (hex8, tet4, tet10)" });
+            }
+            let found = self::mesh(contents, &used)?;
+            match &mesh {
+                None => mesh = Some(found),
+                Some(first) if *first == found => {}
+                Some(_) => {
+                    let allowed = "the mesh before it, which Gmsh repeats where it appends a view";
+                    return Err(source.refused("the mesh after a second $MeshFormat", "another one", allowed));
+                }
+            }
+        }
+        if !is_followed {
+            let what = "the section $Nodes, which holds the nodes";
+            return mesh.ok_or_else(|| GmshError::Missing { place: source.place(), what });
+        }
     }
-    mesh(contents, &used)
 }
 
 /// Tags of the nodes that volume elements use. All elements must be on nodes of the file.
@@ -78,6 +97,7 @@ fn mesh(contents: Contents, used: &HashSet<u64>) -> Result<GmshMesh, GmshError> 
             }
         }
     }
+    mesh.group_tags = groups.tags();
     mesh.volumes = groups.by_name(3..=3)?;
     mesh.surfaces = groups.by_name(2..=2)?;
     mesh.node_groups = groups.by_name(0..=1)?;

@@ -1,66 +1,68 @@
 //! The sections of a Gmsh file, one by one.
 
-use crate::gmsh::elements::{ElementKind, element_kind};
+use crate::gmsh::contents::{Block, Contents, MAX_GROUPS, NEW, group_tag, new_tag};
+use crate::gmsh::elements::element_kind;
 use crate::gmsh::error::GmshError;
 use crate::gmsh::groups::Groups;
 use crate::gmsh::source::{Form, Source, extract};
+use crate::gmsh::version_2;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
-
-/// What a file holds, before tags are resolved.
-#[derive(Default)]
-pub(super) struct Contents {
-    pub(super) groups: Groups,
-    pub(super) nodes: Vec<[f64; 3]>,
-    pub(super) node_tags: Vec<u64>,
-    /// The tags of the nodes once more.
-    pub(super) known_nodes: HashSet<u64>,
-    pub(super) blocks: Vec<Block>,
-}
-
-/// Elements of one kind on one entity.
-pub(super) struct Block {
-    pub(super) kind: ElementKind,
-    pub(super) dimension: usize,
-    /// Tags of the physical groups of the entity.
-    pub(super) physical: Rc<[u32]>,
-    /// Tag of each element and tags of its nodes.
-    pub(super) elements: Vec<(u64, Vec<u64>)>,
-}
 
 /// (dimension, tag) of an entity → tags of its physical groups.
 type Entities = HashMap<(usize, i32), Rc<[u32]>>;
 
-/// Most physical groups of an entity. Members of groups grow with the product of elements and groups, and their memory
-/// must be in proportion to the file.
-pub(super) const MAX_GROUPS: usize = 32;
+/// The first line of a file, and of a view that Gmsh appended.
+const FORMAT: &[u8] = b"$MeshFormat";
 
-/// What is allowed where a tag or a section must be new.
-const NEW: &str = "one that has not appeared before";
+/// Reads the first line of a file.
+pub(super) fn first_line(source: &mut Source) -> Result<(), GmshError> {
+    match source.line() {
+        Some(FORMAT) => Ok(()),
+        Some(line) => Err(source.refused("the first line", extract(line), "$MeshFormat")),
+        None => Err(GmshError::Truncated { place: source.place(), what: "$MeshFormat" }),
+    }
+}
 
-/// Reads all sections.
-pub(super) fn contents(source: &mut Source) -> Result<Contents, GmshError> {
-    format(source)?;
+/// What the sections behind a line `$MeshFormat` hold, up to the end of the file or the next such line.
+pub(super) struct Part {
+    pub(super) contents: Contents,
+    /// Whether it has nodes or elements: the rest of a file that has none is data of a view.
+    pub(super) has_mesh: bool,
+    /// Whether a line `$MeshFormat` ended it.
+    pub(super) is_followed: bool,
+}
+
+/// Reads the sections behind a line `$MeshFormat`.
+pub(super) fn part(source: &mut Source) -> Result<Part, GmshError> {
+    let version = format(source)?;
     let (mut contents, mut entities, mut seen) = (Contents::default(), None, BTreeSet::new());
+    let mut is_followed = false;
     while let Some(head) = source.line() {
         let name = extract(head);
         let Some(word) = head.strip_prefix(b"$").filter(|word| !word.starts_with(b"End")) else {
             return Err(source.refused("what follows a section", name, "another section, such as $Nodes"));
         };
+        if head == FORMAT {
+            is_followed = true;
+            break;
+        }
         let end = [b"$End", word].concat();
         let is_read = matches!(&*name, "$PhysicalNames" | "$Entities" | "$Nodes" | "$Elements");
-        if name == "$MeshFormat" || is_read && !seen.insert(name.clone()) {
+        if is_read && !seen.insert(name.clone()) {
             return Err(source.refused("a section", name, NEW));
         }
-        match &*name {
-            "$PhysicalNames" => names(source, &mut contents.groups)?,
-            "$Entities" if seen.contains("$Elements") => {
+        match (&*name, version) {
+            ("$PhysicalNames", _) => names(source, &mut contents.groups)?,
+            ("$Nodes", Version::Two) => version_2::nodes(source, &mut contents)?,
+            ("$Elements", Version::Two) => version_2::elements(source, &mut contents)?,
+            ("$Entities", _) if seen.contains("$Elements") => {
                 return Err(source.refused("a section after $Elements", name, "$Entities before $Elements"));
             }
-            "$Entities" => entities = Some(read_entities(source, &mut contents.groups)?),
-            "$Nodes" => nodes(source, &mut contents)?,
-            "$Elements" => contents.blocks = elements(source, entities.as_ref())?,
-            "$PartitionedEntities" => {
+            ("$Entities", Version::Four) => entities = Some(read_entities(source, &mut contents.groups)?),
+            ("$Nodes", Version::Four) => nodes(source, &mut contents)?,
+            ("$Elements", Version::Four) => contents.blocks = elements(source, entities.as_ref())?,
+            ("$PartitionedEntities", _) => {
                 let what = "the mesh of $PartitionedEntities";
                 return Err(source.refused(what, "partitioned", "a mesh without partitions"));
             }
@@ -68,14 +70,17 @@ pub(super) fn contents(source: &mut Source) -> Result<Contents, GmshError> {
         }
         end_of_section(source, &end)?;
     }
+    let has_mesh = seen.contains("$Nodes") || seen.contains("$Elements");
+    // Elements of version 2.2 name their groups themselves.
+    let needs_entities = version == Version::Four && contents.groups.has_names();
     let required = [
         (true, "$Nodes", "the section $Nodes, which holds the nodes"),
         (true, "$Elements", "the section $Elements, which holds the elements"),
-        (contents.groups.has_names(), "$Entities", "the section $Entities, which says what is in the physical groups"),
+        (needs_entities, "$Entities", "the section $Entities, which says what is in the physical groups"),
     ];
     match required.into_iter().find(|(is_required, name, _)| *is_required && !seen.contains(*name)) {
-        Some((_, _, what)) => Err(GmshError::Missing { place: source.place(), what }),
-        None => Ok(contents),
+        Some((_, _, what)) if has_mesh => Err(GmshError::Missing { place: source.place(), what }),
+        _ => Ok(Part { contents, has_mesh, is_followed }),
     }
 }
 
@@ -87,18 +92,25 @@ fn end_of_section(source: &mut Source, end: &[u8]) -> Result<(), GmshError> {
     }
 }
 
-/// Reads `$MeshFormat`, which must be the first section, and sets the form of the source.
-fn format(source: &mut Source) -> Result<(), GmshError> {
-    let Some(line) = source.line() else {
-        return Err(GmshError::Truncated { place: source.place(), what: "$MeshFormat" });
+/// The version of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Version {
+    /// 2.2.
+    Two,
+    /// 4.1.
+    Four,
+}
+
+/// Reads what follows the line `$MeshFormat`, and sets the form of the source.
+fn format(source: &mut Source) -> Result<Version, GmshError> {
+    const ALLOWED: &str = "4.1, 2.2";
+    source.set_form(Form::Text);
+    let version: f64 = source.text_number("the version", ALLOWED)?;
+    let version = match version {
+        2.2 => Version::Two,
+        4.1 => Version::Four,
+        _ => return Err(source.refused("the version of the file", format!("{version:?}"), ALLOWED)),
     };
-    if line != b"$MeshFormat" {
-        return Err(source.refused("the first line", extract(line), "$MeshFormat"));
-    }
-    let version: f64 = source.text_number("the version", "4.1")?;
-    if version != 4.1 {
-        return Err(source.refused("the version of the file", format!("{version:?}"), "4.1; save it as version 4.1"));
-    }
     let is_binary = source.text_in("the file type (0: text, 1: binary)", 0..=1)? == 1;
     source.text_in("the size of a number in bytes", 8..=8)?;
     if is_binary {
@@ -111,7 +123,8 @@ fn format(source: &mut Source) -> Result<(), GmshError> {
             order => return Err(source.refused("the number that tells the byte order", order, "1")),
         }
     }
-    end_of_section(source, b"$EndMeshFormat")
+    end_of_section(source, b"$EndMeshFormat")?;
+    Ok(version)
 }
 
 /// Reads `$PhysicalNames`, which are text in binary files too.
@@ -157,7 +170,7 @@ fn read_entities(source: &mut Source, groups: &mut Groups) -> Result<Entities, G
             }
             for _ in 0..groups_of_entity {
                 // The sign states the orientation of the entity inside the group.
-                let tag = source.int("the tag of a physical group")?.unsigned_abs();
+                let tag = group_tag(source, "the tag of a physical group")?;
                 if tag == 0 {
                     return Err(source.refused("the tag of a physical group", "0", "numbers other than 0"));
                 }
@@ -194,15 +207,10 @@ fn agree(source: &Source, what: &'static str, sum: usize, total: usize, fits: bo
     Err(source.refused(what, sum, format!("{total}, which the head of the section states")))
 }
 
-/// The tag of a node or an element, which must not be among the tags before.
-fn new_tag(source: &mut Source, what: &'static str, tags: &mut HashSet<u64>) -> Result<u64, GmshError> {
-    let tag = source.tag(what)?;
-    if tags.insert(tag) { Ok(tag) } else { Err(source.refused(what, tag, NEW)) }
-}
-
 /// Reads `$Nodes`.
 fn nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     const SUM: &str = "the number of nodes in the blocks";
+    const NODE: &str = "the tag of a node";
     let [blocks, total] = block_counts(source, "the number of nodes", 4)?;
     for _ in 0..blocks {
         let dimension = source.int_in("the dimension of an entity", 0..=3)?;
@@ -213,7 +221,8 @@ fn nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> 
         let sum = contents.nodes.len() + count;
         agree(source, SUM, sum, total, sum <= total)?;
         for _ in 0..count {
-            contents.node_tags.push(new_tag(source, "the tag of a node", &mut contents.known_nodes)?);
+            let tag = source.tag(NODE)?;
+            contents.node_tags.push(new_tag(source, NODE, tag, &mut contents.known_nodes)?);
         }
         for _ in 0..count {
             let mut position = [0.0; 3];
@@ -232,6 +241,7 @@ fn nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> 
 /// Reads `$Elements`.
 fn elements(source: &mut Source, entities: Option<&Entities>) -> Result<Vec<Block>, GmshError> {
     const SUM: &str = "the number of elements in the blocks";
+    const ELEMENT: &str = "the tag of an element";
     let [blocks, total] = block_counts(source, "the number of elements", 2)?;
     let (mut read, mut sum, mut tags) = (Vec::new(), 0, HashSet::new());
     for _ in 0..blocks {
@@ -248,7 +258,7 @@ fn elements(source: &mut Source, entities: Option<&Entities>) -> Result<Vec<Bloc
         let number = source.int("the type of elements")?;
         let (kind, dimension, nodes) = element_kind(number).map_err(|name| {
             let place = source.place();
-            GmshError::ElementType { place, entity, number, name }
+            GmshError::ElementType { place, entity: Some(entity), number, name }
         })?;
         if dimension != stated {
             let allowed = format!("{dimension}, the dimension of its elements of type {number}");
@@ -259,7 +269,8 @@ fn elements(source: &mut Source, entities: Option<&Entities>) -> Result<Vec<Bloc
         agree(source, SUM, sum, total, sum <= total)?;
         let mut elements = Vec::with_capacity(count);
         for _ in 0..count {
-            let tag = new_tag(source, "the tag of an element", &mut tags)?;
+            let tag = source.tag(ELEMENT)?;
+            let tag = new_tag(source, ELEMENT, tag, &mut tags)?;
             let nodes = (0..nodes).map(|_| source.tag("the tag of a node of an element"));
             elements.push((tag, nodes.collect::<Result<Vec<u64>, GmshError>>()?));
         }

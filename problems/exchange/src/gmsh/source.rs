@@ -38,6 +38,10 @@ impl<'a> Source<'a> {
         self.form = form;
     }
 
+    pub(super) const fn form(&self) -> Form {
+        self.form
+    }
+
     /// Place of the number or line that was read last.
     pub(super) fn place(&self) -> Place {
         if self.form != Form::Text {
@@ -131,7 +135,8 @@ impl<'a> Source<'a> {
 
     fn among(&self, what: &'static str, found: i32, allowed: &RangeInclusive<i32>) -> Result<usize, GmshError> {
         usize::try_from(found).ok().filter(|_| allowed.contains(&found)).ok_or_else(|| {
-            let range = format!("whole numbers from {} to {}", allowed.start(), allowed.end());
+            let [first, last] = [allowed.start(), allowed.end()];
+            let range = if first == last { first.to_string() } else { format!("whole numbers from {first} to {last}") };
             self.refused(what, found, range)
         })
     }

@@ -134,7 +134,7 @@ fn gmsh_mesh(mesh: &Mesh, nodes: &[[f64; 3]]) -> GmshMesh {
         .collect();
     let mut this =
         GmshMesh { node_tags: (1..=nodes.len() as u64).collect(), nodes: nodes.to_vec(), cells, ..GmshMesh::default() };
-    for (name, faces) in mesh.faces() {
+    for (name, faces) in mesh.faces().iter().chain(mesh.inner_faces()) {
         let first = this.facets.len();
         for &face in faces {
             let nodes: Vec<usize> = mesh.face_nodes(face).map(|node| node as usize).collect();
@@ -148,6 +148,9 @@ fn gmsh_mesh(mesh: &Mesh, nodes: &[[f64; 3]]) -> GmshMesh {
         let cells = (0..mesh.cell_count()).filter(|cell| mesh.volume_of(*cell) == number);
         this.volumes.insert(name.clone(), cells.collect());
     }
-    this.node_groups = mesh.node_sets().iter().map(|(name, nodes)| (name.clone(), wide(nodes))).collect();
-    this
+    let of_nodes = mesh.node_sets().iter().filter(|(name, _)| !mesh.inner_faces().contains_key(*name));
+    this.node_groups = of_nodes.map(|(name, nodes)| (name.clone(), wide(nodes))).collect();
+    this.group_tags = mesh.group_tags().clone();
+    // A facet with several names stands there once.
+    this.merged().0.into_owned()
 }

@@ -38,6 +38,10 @@ pub struct Mesh {
     volume_of: Vec<u16>,
     faces: BTreeMap<String, Vec<CellFace>>,
     node_sets: BTreeMap<String, Vec<u32>>,
+    /// Named faces between cells, each by one of its two cells; their nodes are node sets.
+    inner_faces: BTreeMap<String, Vec<CellFace>>,
+    /// Tags of physical groups by dimension and name, where the mesh comes from a file that has them.
+    group_tags: BTreeMap<(usize, String), u32>,
     /// The piece of every cell, where the mesh brings its own.
     pieces: Option<Vec<u32>>,
 }
@@ -68,6 +72,8 @@ impl Mesh {
             volume_of: Vec::new(),
             faces: BTreeMap::new(),
             node_sets: BTreeMap::new(),
+            inner_faces: BTreeMap::new(),
+            group_tags: BTreeMap::new(),
             pieces: None,
         };
         for (number, (kind, nodes)) in cells.into_iter().enumerate() {
@@ -98,6 +104,28 @@ impl Mesh {
     /// [`SceneError::OutOfRange`] for a face that does not exist.
     pub fn with_face(mut self, name: impl Into<String>, faces: Vec<CellFace>) -> Result<Self, SceneError> {
         let name = name.into();
+        self.check_faces(&name, &faces)?;
+        self.faces.insert(name, faces);
+        Ok(self)
+    }
+
+    /// Gives a name to some faces between cells, each by one of its two cells, and to their nodes. Nodes that have this
+    /// name already keep it.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a face that does not exist.
+    pub fn with_inner_face(mut self, name: impl Into<String>, faces: Vec<CellFace>) -> Result<Self, SceneError> {
+        let name = name.into();
+        self.check_faces(&name, &faces)?;
+        let named = self.node_sets.get(&name).cloned().unwrap_or_default();
+        let nodes = faces.iter().flat_map(|face| self.face_nodes(*face)).chain(named.iter().copied()).collect();
+        if named.is_empty() {
+            self.inner_faces.insert(name.clone(), faces);
+        }
+        self.with_node_set(name, nodes)
+    }
+
+    fn check_faces(&self, name: &str, faces: &[CellFace]) -> Result<(), SceneError> {
         let exists = |face: &CellFace| {
             self.kinds.get(face.cell as usize).is_some_and(|kind| usize::from(face.face) < kind.faces().len())
         };
@@ -105,8 +133,7 @@ impl Mesh {
             let allowed = format!("faces of the {} cells", self.kinds.len());
             return Err(SceneError::out_of_range(format!("face \"{name}\""), format!("{bad:?}"), allowed));
         }
-        self.faces.insert(name, faces);
-        Ok(self)
+        Ok(())
     }
 
     /// Gives a name to some nodes.
@@ -135,6 +162,13 @@ impl Mesh {
         }
         (self.volumes, self.volume_of) = (names, volume_of);
         Ok(self)
+    }
+
+    /// Remembers the tags of physical groups by dimension (0 for those of nodes) and name.
+    #[must_use]
+    pub fn with_group_tags(mut self, tags: BTreeMap<(usize, String), u32>) -> Self {
+        self.group_tags = tags;
+        self
     }
 
     /// Divides the cells into pieces, numbered from 0 without gap.
@@ -205,6 +239,17 @@ impl Mesh {
     /// Named sets of nodes, each ascending.
     pub fn node_sets(&self) -> &BTreeMap<String, Vec<u32>> {
         &self.node_sets
+    }
+
+    /// Named faces between cells, each by one of its two cells; their nodes are among [`Self::node_sets`].
+    pub fn inner_faces(&self) -> &BTreeMap<String, Vec<CellFace>> {
+        &self.inner_faces
+    }
+
+    /// Tags of physical groups by dimension (0 for those of nodes) and name, where the mesh comes from a file that has
+    /// them.
+    pub fn group_tags(&self) -> &BTreeMap<(usize, String), u32> {
+        &self.group_tags
     }
 
     /// The piece of every cell, where the mesh brings its own.

@@ -13,3 +13,4 @@ pub use grid::Grid;
 pub use kind::CellKind;
 pub(crate) use mesh::narrow;
 pub use mesh::{Cell, CellFace, Mesh, WHOLE, bounding_box, smallest_extent};
+pub use skin::SharedFace;

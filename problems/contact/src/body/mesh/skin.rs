@@ -3,6 +3,15 @@
 use crate::body::mesh::{CellFace, Mesh};
 use std::collections::HashMap;
 
+/// A face with the cells that have it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SharedFace {
+    /// The face of the first cell.
+    pub first: CellFace,
+    /// The face of the cell on the other side; none on the skin.
+    pub second: Option<CellFace>,
+}
+
 impl Mesh {
     /// Corners of a face, ascending: the key by which cells share it.
     fn face_key(&self, face: CellFace) -> [u32; 4] {
@@ -27,9 +36,42 @@ impl Mesh {
         self.all_faces().filter(|face| counts[&self.face_key(*face)] == 1).collect()
     }
 
-    /// The skin by the corners of its faces, ascending; the fourth one of a triangle is the largest number.
-    pub fn skin_by_corners(&self) -> HashMap<[u32; 4], CellFace> {
-        self.skin().into_iter().map(|face| (self.face_key(face), face)).collect()
+    /// All faces by their corners, ascending; the fourth one of a triangle is the largest number.
+    ///
+    /// # Errors
+    /// Two faces on the same corners whose cells do not lie on different sides of them, with every third cell.
+    pub fn faces_by_corners(&self) -> Result<HashMap<[u32; 4], SharedFace>, [CellFace; 2]> {
+        let mut found: HashMap<[u32; 4], SharedFace> = HashMap::new();
+        for face in self.all_faces() {
+            let shared = found.entry(self.face_key(face)).or_insert(SharedFace { first: face, second: None });
+            if shared.first == face {
+                continue;
+            }
+            match shared.second {
+                None if self.are_opposite(shared.first, face) => shared.second = Some(face),
+                Some(second) if self.are_opposite(shared.first, face) => return Err([second, face]),
+                _ => return Err([shared.first, face]),
+            }
+        }
+        Ok(found)
+    }
+
+    /// Whether the corners of two faces, each counterclockwise seen from outside of its cell, go round in opposite ways.
+    fn are_opposite(&self, one: CellFace, other: CellFace) -> bool {
+        let corners = |face: CellFace| {
+            let (mut nodes, corners) = self.face_with_corners(face);
+            nodes.truncate(corners);
+            nodes
+        };
+        let (one, mut other) = (corners(one), corners(other));
+        other.reverse();
+        match other.iter().position(|node| *node == one[0]) {
+            Some(start) => {
+                other.rotate_left(start);
+                one == other
+            }
+            None => false,
+        }
     }
 
     /// Cells on the other side of the faces of every cell.
