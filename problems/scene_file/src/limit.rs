@@ -156,7 +156,7 @@ pub(crate) fn limits(sections: &[LimitSection], cases: &[&str]) -> Result<Vec<Li
         }
         let limit = |side, bound| {
             let quantity = section.quantity(&field, side == LimitSide::AtLeast)?;
-            Ok::<_, SceneError>(Limit { quantity, case: section.case.clone(), side, bound })
+            Ok::<_, SceneError>(Limit { case: section.case.clone(), ..Limit::new(quantity, side, bound) })
         };
         match (section.at_least, section.at_most) {
             (None, None) => return Err(SceneError::out_of_range(field("at_most"), "missing", "at_most or at_least")),

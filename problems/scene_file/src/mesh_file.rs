@@ -6,7 +6,7 @@ use crate::mesh_check::{self, EDGES, check_cells, check_parts};
 use contact::body::mesh::{CellKind, Mesh, SharedFace};
 use contact::error::SceneError;
 use exchange::gmsh::{self, GmshFacet, GmshMesh, Repeated};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::path::Path;
 
@@ -74,8 +74,20 @@ pub(crate) fn convert(gmsh: &GmshMesh, unit: UnitName, name: &str) -> Result<Mes
     let mesh = with_volumes(gmsh, mesh)?;
     let mesh = with_node_groups(gmsh, mesh)?;
     let mesh = with_surfaces(gmsh, mesh, &faces, &mut notes, name)?;
-    let mesh = mesh.with_group_tags(gmsh.group_tags.clone());
+    let empty = empty_names(gmsh);
+    if !empty.is_empty() {
+        let names: Vec<String> = empty.iter().map(|name| format!("\"{name}\"")).collect();
+        notes.push(format!("{name}: names without elements: {}; nothing can be asked of them", names.join(", ")));
+    }
+    let mesh = mesh.with_group_tags(gmsh.group_tags.clone()).from_file(name, empty);
     Ok(MeshFile { mesh, notes })
+}
+
+/// Names of physical groups none of which has elements: those of a part that a boolean operation has taken away.
+fn empty_names(gmsh: &GmshMesh) -> BTreeSet<String> {
+    let groups = || [&gmsh.volumes, &gmsh.surfaces, &gmsh.node_groups].into_iter().flatten();
+    let full: BTreeSet<&String> = groups().filter(|(_, members)| !members.is_empty()).map(|(name, _)| name).collect();
+    groups().map(|(name, _)| name).filter(|name| !full.contains(name)).cloned().collect()
 }
 
 /// What is said of facets and cells that were listed more than once.
@@ -127,14 +139,15 @@ fn description(gmsh: &GmshMesh, nodes: &[[f64; 3]], name: &str, unit: UnitName) 
 
 /// Gives every cell its volume: the first physical group that it is in.
 fn with_volumes(gmsh: &GmshMesh, mesh: Mesh) -> Result<Mesh, SceneError> {
-    if gmsh.volumes.is_empty() {
+    let volumes = || gmsh.volumes.iter().filter(|(_, cells)| !cells.is_empty());
+    let mut names: Vec<String> = volumes().map(|(name, _)| name.clone()).collect();
+    if names.is_empty() {
         return Ok(mesh);
     }
-    let mut names: Vec<String> = gmsh.volumes.keys().cloned().collect();
     let mut volume_of: Vec<Option<u16>> = vec![None; mesh.cell_count()];
     let allowed = "at most 65534 physical volumes";
     let too_many = || SceneError::out_of_range("physical volumes", names.len(), allowed);
-    for (number, (name, cells)) in gmsh.volumes.iter().enumerate() {
+    for (number, (name, cells)) in volumes().enumerate() {
         let number = u16::try_from(number).map_err(|_| too_many())?;
         for &cell in cells {
             if let Some(other) = volume_of[cell].replace(number) {
@@ -153,7 +166,8 @@ fn with_volumes(gmsh: &GmshMesh, mesh: Mesh) -> Result<Mesh, SceneError> {
 
 fn with_node_groups(gmsh: &GmshMesh, mesh: Mesh) -> Result<Mesh, SceneError> {
     let narrow = |nodes: &[usize]| nodes.iter().map(|&node| node as u32).collect();
-    gmsh.node_groups.iter().try_fold(mesh, |mesh, (name, nodes)| mesh.with_node_set(name, narrow(nodes)))
+    let mut groups = gmsh.node_groups.iter().filter(|(_, nodes)| !nodes.is_empty());
+    groups.try_fold(mesh, |mesh, (name, nodes)| mesh.with_node_set(name, narrow(nodes)))
 }
 
 /// Gives names to the faces of cells on which surface elements lie. Where these lie between cells, the name is one of
@@ -165,7 +179,7 @@ fn with_surfaces(
     notes: &mut Vec<String>,
     name: &str,
 ) -> Result<Mesh, SceneError> {
-    for (surface, facets) in &gmsh.surfaces {
+    for (surface, facets) in gmsh.surfaces.iter().filter(|(_, facets)| !facets.is_empty()) {
         let field = || format!("physical surface \"{surface}\"");
         let mut found = Vec::with_capacity(facets.len());
         for facet in facets.iter().map(|&facet| &gmsh.facets[facet]) {

@@ -65,7 +65,7 @@ impl LimitCheck {
                 pressures.copied().fold(f64::NEG_INFINITY, f64::max) - limit.bound
             };
             let recomputed = own.as_ref().map(|(value, _)| *value).or_else(|| pressures.map(peak));
-            let rounding = MAX_ROUNDING * limit.bound.abs();
+            let rounding = MAX_ROUNDING * limit.scale();
             let excess = recomputed.map(|recomputed| Number::new(proof.values[index], recomputed, rounding));
             let at_point = proof.cuts.iter().filter(|cut| cut.constraint == index && cut.point == certificate.point);
             let difference = |cut: &nonsmooth::report::ConstraintCut| match (&own, pressures) {

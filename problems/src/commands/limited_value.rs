@@ -22,7 +22,7 @@ impl LimitedValue {
 
     /// The limit in words: `peak-pressure at most 3400 MPa`.
     pub fn words(&self) -> String {
-        let Limit { quantity, side, bound, case } = &self.limit;
+        let Limit { quantity, side, bound, case, .. } = &self.limit;
         let side = side.name().replace('_', " ");
         let words = format!("{} {side} {} {}", quantity.name(), number(*bound), raised(quantity.unit()));
         let case = case.as_ref().map_or_else(String::new, |case| format!(" in case \"{case}\""));
@@ -40,7 +40,7 @@ impl LimitedValue {
 
     /// The keys of the limit in JSON.
     pub fn keys(&self) -> Map<String, serde_json::Value> {
-        let Limit { quantity, side, bound, case } = &self.limit;
+        let Limit { quantity, side, bound, case, .. } = &self.limit;
         let mut keys =
             Map::from_iter([("quantity".to_owned(), json!(quantity.name())), (side.name().to_owned(), json!(bound))]);
         keys.extend(case.iter().map(|case| ("case".to_owned(), json!(case))));

@@ -108,9 +108,9 @@ impl SolvedShape {
         self.limits.iter().all(|limit| limit.excess() == 0.0)
     }
 
-    /// The largest violation of a limit over its bound, 0 if all are kept; none without limits.
+    /// The largest violation of a limit over its scale, 0 if all are kept; none without limits.
     pub fn limit_violation(&self) -> Option<f64> {
-        let shares = self.limits.iter().map(|limit| limit.excess() / limit.limit.bound.abs());
+        let shares = self.limits.iter().map(|limit| limit.excess() / limit.limit.scale());
         shares.reduce(f64::max)
     }
 

@@ -3,7 +3,7 @@
 use crate::body::mesh::{CellFace, Mesh};
 use crate::error::SceneError;
 use crate::formula::Formula;
-use crate::names::{find, find_face};
+use crate::names::{find_face, find_volume};
 use crate::scene::{Load, LoadKind};
 
 /// A load with the faces or cells that it acts on.
@@ -42,8 +42,7 @@ impl Loaded {
         let traction = match &load.kind {
             LoadKind::BodyForce(force) => {
                 finite("body_force", force)?;
-                let names = || mesh.volumes().iter().map(String::as_str);
-                let volume = load.place.as_ref().map(|name| find(&format!("{field}.volume"), name, names()));
+                let volume = load.place.as_ref().map(|name| find_volume(&format!("{field}.volume"), name, mesh));
                 let volume = volume.transpose()?;
                 let inside = |cell: &usize| volume.is_none_or(|volume| volume == mesh.volume_of(*cell));
                 let cells = (0..mesh.cell_count()).filter(inside).map(|cell| cell as u32);

@@ -4,7 +4,7 @@ use crate::body::Place;
 use crate::body::elasticity::Material;
 use crate::body::mesh::{CellFace, Mesh};
 use crate::error::SceneError;
-use crate::names::find;
+use crate::names::find_volume;
 use crate::scene::BodyScene;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -29,8 +29,7 @@ impl Solid {
     pub fn new(name: &str, scene: &BodyScene, mesh: Arc<Mesh>, contact: &[CellFace]) -> Result<Self, SceneError> {
         let mut materials = vec![scene.material; mesh.volumes().len()];
         for (volume, material) in &scene.materials {
-            let allowed = || mesh.volumes().iter().map(String::as_str);
-            materials[find(&format!("{name}.materials: volume"), volume, allowed())?] = *material;
+            materials[find_volume(&format!("{name}.materials: volume"), volume, &mesh)?] = *material;
         }
         Ok(Self { ends: tied_nodes(&mesh, contact), materials, mesh })
     }

@@ -46,9 +46,12 @@ pub struct Limit {
     pub side: LimitSide,
     /// The bound, in the unit of the quantity.
     pub bound: f64,
+    /// What counts as a typical value of a quantity that may be zero, in its unit: a bound may be zero as well. 0 where
+    /// no bound is.
+    pub typical: f64,
 }
 
-/// Share of a bound by which a quantity that keeps it may be off. Steps along a curved constraint miss it by a little;
+/// Share of its scale by which a quantity that keeps its bound may be off. Steps along a curved constraint miss it by a little;
 /// steps that do nothing but remove the rest would cost a state each.
 const ALLOWANCE: f64 = 1e-6;
 
@@ -104,7 +107,12 @@ impl LimitedQuantity {
 impl Limit {
     /// A limit in all load cases.
     pub fn new(quantity: LimitedQuantity, side: LimitSide, bound: f64) -> Self {
-        Self { quantity, case: None, side, bound }
+        Self { quantity, case: None, side, bound, typical: 0.0 }
+    }
+
+    /// What an excess is compared with: the bound, or a typical value where that is larger.
+    pub fn scale(&self) -> f64 {
+        self.bound.abs().max(self.typical)
     }
 
     /// Limits with the numbers of their cases in the order of the constraints of the optimizer: peak pressures by case,
@@ -130,19 +138,17 @@ impl Limit {
         Ok(found)
     }
 
-    /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-6 of the bound.
+    /// By how much a value is beyond the bound, in the unit of the quantity; 0 up to 1e-6 of the scale.
     pub fn excess(&self, value: f64) -> f64 {
-        let excess = match self.side {
-            LimitSide::AtMost => value - self.bound,
-            LimitSide::AtLeast => self.bound - value,
-            LimitSide::Equal => (value - self.bound).abs(),
-        };
-        if excess > ALLOWANCE * self.bound.abs() { excess } else { 0.0 }
+        let beyond = self.constraint(value);
+        if self.side == LimitSide::Equal { beyond.abs() } else { beyond.max(0.0) }
     }
 
-    /// The constraint c = ±(value − bound) of the optimizer; a value within 1e-6 of the bound counts as at it.
+    /// The constraint c = ±(value − bound) of the optimizer; 0 within 1e-6 of the scale: such a value counts as at the
+    /// bound.
     pub(crate) fn constraint(&self, value: f64) -> f64 {
-        beyond(self.side, value, self.bound)
+        let beyond = sign(self.side) * (value - self.bound);
+        if beyond.abs() <= ALLOWANCE * self.scale() { 0.0 } else { beyond }
     }
 
     /// What it asks of the optimizer. Smooth functions of the contact state have kinks where the state has them, which
@@ -176,10 +182,4 @@ impl Limit {
 
 fn sign(side: LimitSide) -> f64 {
     if side == LimitSide::AtLeast { -1.0 } else { 1.0 }
-}
-
-/// c = ±(value − bound); 0 within 1e-6 of the bound.
-pub(crate) fn beyond(side: LimitSide, value: f64, bound: f64) -> f64 {
-    let beyond = sign(side) * (value - bound);
-    if beyond.abs() <= ALLOWANCE * bound.abs() { 0.0 } else { beyond }
 }

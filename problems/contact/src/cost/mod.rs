@@ -19,7 +19,6 @@ mod volume;
 pub use field::FieldCost;
 pub use field_measure::FieldMeasure;
 pub use field_piece::{FieldGradient, FieldPiece};
-pub(crate) use limit::beyond;
 pub use limit::{Limit, LimitSide, LimitedQuantity};
 pub use outputs::PressureOutputs;
 pub use pressure::PressureCost;

@@ -2,10 +2,10 @@
 
 use crate::body::Body;
 use crate::body::elasticity::CellNodes;
-use crate::body::mesh::bounding_box;
+use crate::body::mesh::{Mesh, bounding_box};
 use crate::equilibrium::{ContactProblem, SolvedBody};
 use crate::error::SceneError;
-use crate::names::find;
+use crate::names::{Kind, check_among, find};
 use rayon::prelude::*;
 
 /// A part of one body or of all.
@@ -121,8 +121,8 @@ impl Region {
     fn face_nodes(&self, place: &str, face: &str, problem: &ContactProblem) -> Result<Vec<Vec<u32>>, SceneError> {
         self.check(place, problem)?;
         let bodies = || problem.bodies.iter().enumerate().filter(|(_, body)| self.is_of(body));
-        let names = bodies().flat_map(|(_, body)| body.mesh.faces().keys());
-        find(&format!("{place}.region.face"), face, names.map(String::as_str))?;
+        let meshes: Vec<&Mesh> = bodies().map(|(_, body)| &*body.mesh).collect();
+        check_among(&format!("{place}.region.face"), face, &meshes, &[Kind::Faces])?;
         let positions = problem.start_positions();
         let slack = slack(&positions);
         let mut found = vec![Vec::new(); positions.len()];
@@ -152,8 +152,9 @@ impl Region {
             find(&format!("{place}.region.body"), body, problem.bodies.iter().map(|body| body.name.as_str()))?;
         }
         if let Some(volume) = &self.volume {
-            let names = problem.bodies.iter().flat_map(|body| body.mesh.volumes());
-            find(&format!("{place}.region.volume"), volume, names.map(String::as_str))?;
+            let bodies = problem.bodies.iter().filter(|body| self.is_of(body));
+            let meshes: Vec<&Mesh> = bodies.map(|body| &*body.mesh).collect();
+            check_among(&format!("{place}.region.volume"), volume, &meshes, &[Kind::Volumes])?;
         }
         Ok(())
     }
@@ -176,7 +177,10 @@ impl Region {
 
     /// The refusal of a box without any of some places.
     fn without(&self, place: &str, what: &str, places: &[[f64; 3]]) -> SceneError {
-        let value = format!("{:?} to {:?}", self.lower, self.upper);
+        let bounded = (0..3).filter(|&axis| self.lower[axis] > f64::NEG_INFINITY || self.upper[axis] < f64::INFINITY);
+        let bounds = bounded.map(|axis| format!("x{} = {:?} … {:?}", axis + 1, self.lower[axis], self.upper[axis]));
+        let bounds: Vec<String> = bounds.collect();
+        let value = if bounds.is_empty() { "no bounds".to_owned() } else { bounds.join(", ") };
         let [least, most] = bounding_box(places);
         let allowed = format!("a box that holds the {what}; they lie between {least:?} and {most:?} mm");
         SceneError::out_of_range(format!("{place}.region"), value, allowed)

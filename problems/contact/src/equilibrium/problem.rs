@@ -312,6 +312,12 @@ impl ContactProblem {
         let moved = self.largest_prescribed() + interference;
         loads + modulus * moved * self.contact_area().sqrt()
     }
+
+    /// Roughly by how much the load presses the bodies together, mm: load/(E√A) with the smallest E of their materials.
+    pub(crate) fn typical_displacement(&self) -> f64 {
+        let modulus = self.materials().map(Material::young_modulus).fold(f64::INFINITY, f64::min);
+        self.load() / (modulus * self.contact_area().sqrt())
+    }
 }
 
 /// Refuses a body with an inverted or flat cell.

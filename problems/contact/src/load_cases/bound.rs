@@ -54,7 +54,7 @@ impl Bound {
         bounds.collect()
     }
 
-    fn new(limit: Limit, case: usize, problem: &ContactProblem) -> Result<Self, SceneError> {
+    fn new(mut limit: Limit, case: usize, problem: &ContactProblem) -> Result<Self, SceneError> {
         let start = || volume(problem, &problem.scene.start());
         let quantity = match &limit.quantity {
             LimitedQuantity::PeakPressure => Quantity::PeakPressure,
@@ -66,6 +66,11 @@ impl Bound {
             LimitedQuantity::Volume => Quantity::Volume(1.0),
         };
         let kind = limit.kind()?;
+        limit.typical = match &limit.quantity {
+            LimitedQuantity::Field(FieldMeasure::Displacement { .. }) => problem.typical_displacement(),
+            LimitedQuantity::Field(FieldMeasure::Compliance) => problem.load() * problem.typical_displacement(),
+            _ => 0.0,
+        };
         Ok(Self { limit, case, quantity, kind })
     }
 

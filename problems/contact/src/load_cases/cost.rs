@@ -1,6 +1,6 @@
 //! The objective of all cases as a function of their outputs, with the limits that are functions of the pressures.
 
-use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs, beyond};
+use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
 use crate::shape::bending_rows;
@@ -36,11 +36,10 @@ struct Part {
 }
 
 /// A limit of the largest pressure of one case.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct PeakLimit {
     part: usize,
-    side: LimitSide,
-    bound: f64,
+    limit: Limit,
 }
 
 /// h of the outputs of all cases: max w_k J_k or Σ w_k J_k, or the volume; with the peak pressures that are limited as
@@ -70,7 +69,7 @@ impl CasesCost {
         let peaks = limits.filter(|(limit, _)| limit.quantity == LimitedQuantity::PeakPressure);
         let peak = |(limit, part): (Limit, usize)| {
             limit.kind()?;
-            Ok(PeakLimit { part, side: limit.side, bound: limit.bound })
+            Ok(PeakLimit { part, limit })
         };
         let peaks = peaks.map(peak).collect::<Result<Vec<_>, SceneError>>()?;
         let (mut parts, mut next) = (Vec::new(), 0);
@@ -353,15 +352,15 @@ impl OuterFunction for CasesCost {
             weights
         };
         let mut pieces = Vec::new();
-        for (constraint, limit) in self.limits.iter().enumerate() {
-            let range = self.parts[limit.part].pressures.clone();
+        for (constraint, PeakLimit { part, limit }) in self.limits.iter().enumerate() {
+            let range = self.parts[*part].pressures.clone();
             let pressures = outputs.rows(range.start, range.len());
             let peak = pressures.max();
             if limit.side == LimitSide::AtLeast {
                 let index = range.start + pressures.imax();
                 pieces.push(OutputPiece {
                     constraint,
-                    value: beyond(limit.side, peak, limit.bound),
+                    value: limit.constraint(peak),
                     weights: unit(index, -1.0),
                 });
                 continue;
@@ -371,7 +370,7 @@ impl OuterFunction for CasesCost {
             let near = nodes.filter(|(_, pressure)| **pressure == peak || **pressure >= least);
             pieces.extend(near.map(|(index, pressure)| OutputPiece {
                 constraint,
-                value: beyond(limit.side, *pressure, limit.bound),
+                value: limit.constraint(*pressure),
                 weights: unit(range.start + index, 1.0),
             }));
         }

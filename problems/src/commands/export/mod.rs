@@ -64,6 +64,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     };
     let differences = run.filter(|_| options.friction_problem).map_or_else(Vec::new, |run| run.differences);
     problem.admissible.check_shape(&controls)?;
+    // What no state is computed for is no part either.
+    problem.rows(&problem.positions(controls.as_slice())?)?;
     let block = Block::of(&problem.scene);
     let files = files(&problem, block, controls.as_slice(), options)?;
     // The folder is touched when all that it will hold is there.

@@ -6,7 +6,7 @@ use crate::body::mesh::CellKind;
 use crate::error::SceneError;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A face of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -42,6 +42,9 @@ pub struct Mesh {
     inner_faces: BTreeMap<String, Vec<CellFace>>,
     /// Tags of physical groups by dimension and name, where the mesh comes from a file that has them.
     group_tags: BTreeMap<(usize, String), u32>,
+    /// The file of the mesh, and the names that it gives to no elements.
+    file: Option<String>,
+    empty_names: BTreeSet<String>,
     /// The piece of every cell, where the mesh brings its own.
     pieces: Option<Vec<u32>>,
 }
@@ -74,6 +77,8 @@ impl Mesh {
             node_sets: BTreeMap::new(),
             inner_faces: BTreeMap::new(),
             group_tags: BTreeMap::new(),
+            file: None,
+            empty_names: BTreeSet::new(),
             pieces: None,
         };
         for (number, (kind, nodes)) in cells.into_iter().enumerate() {
@@ -164,6 +169,13 @@ impl Mesh {
         Ok(self)
     }
 
+    /// Remembers the file of the mesh and the names that it gives to no elements, for messages.
+    #[must_use]
+    pub fn from_file(mut self, file: impl Into<String>, empty_names: BTreeSet<String>) -> Self {
+        (self.file, self.empty_names) = (Some(file.into()), empty_names);
+        self
+    }
+
     /// Remembers the tags of physical groups by dimension (0 for those of nodes) and name.
     #[must_use]
     pub fn with_group_tags(mut self, tags: BTreeMap<(usize, String), u32>) -> Self {
@@ -244,6 +256,16 @@ impl Mesh {
     /// Named faces between cells, each by one of its two cells; their nodes are among [`Self::node_sets`].
     pub fn inner_faces(&self) -> &BTreeMap<String, Vec<CellFace>> {
         &self.inner_faces
+    }
+
+    /// The file of the mesh, if it comes from one.
+    pub fn file(&self) -> Option<&str> {
+        self.file.as_deref()
+    }
+
+    /// Names that the file of the mesh gives to no elements: nothing can be asked of them.
+    pub fn empty_names(&self) -> &BTreeSet<String> {
+        &self.empty_names
     }
 
     /// Tags of physical groups by dimension (0 for those of nodes) and name, where the mesh comes from a file that has
