@@ -25,6 +25,9 @@ pub(super) fn forces(
             forces[point.rows()].fill(0.0);
         }
     }
-    let residuals = Residuals { newton: norm(&residual), ..configuration.residuals(problem, &forces, &jumps) };
+    let residuals = Residuals {
+        newton: norm(&residual),
+        ..configuration.residuals(problem, &forces, &jumps, contact.unit.recip())
+    };
     ContactForces::unpack(boundary, &contact.rows, &forces, &jumps, status, residuals, Kink::of(boundary, &arguments))
 }

@@ -12,9 +12,9 @@ const OTHER_NORMS: f64 = 10.0;
 /// Largest residual of a state that any solver returns, unless a coarser one is asked for.
 pub const MAX_RESIDUAL: f64 = 1e-8;
 
-/// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless. Their units belong to the scene
-/// and not to a solver: the load, and for the displacements of a contact node its stiffness c = E*√A, with the plane
-/// modulus E* of the bodies in series and the area A of the node.
+/// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless. Forces are relative to the
+/// contact forces, displacements of a contact node are times its stiffness c = E*√A, with the plane modulus E* of the
+/// bodies in series and the area A of the node, or the mean stiffness of the nodes where that is smaller.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Residuals {
     /// Resultant of loads and contact forces along the motions that supports leave free, over the total load.

@@ -60,11 +60,12 @@ impl Configuration {
         Ok(Self { positions, rows: Arc::new(rows), rigid, grounded, prescribed })
     }
 
-    /// The residuals of packed contact forces, N, and jumps, mm, whatever solver found them, in units that it has no
-    /// part in; without the residual of its own iteration.
-    pub(crate) fn residuals(&self, problem: &ContactProblem, forces: &[f64], jumps: &[f64]) -> Residuals {
+    /// The residuals of packed contact forces, N, and jumps, mm, whatever solver found them; without the residual of its
+    /// own iteration. `bound`: the mean stiffness of a contact node, N/mm, where bodies bend and resist less than E*√A.
+    pub(crate) fn residuals(&self, problem: &ContactProblem, forces: &[f64], jumps: &[f64], bound: f64) -> Residuals {
         let nodes = problem.contact_moduli.iter().zip(&self.rows.nodes);
-        let stiffness: Vec<f64> = nodes.map(|(modulus, node)| modulus * node.area.max(0.0).sqrt()).collect();
+        let stiffness = nodes.map(|(modulus, node)| bound.min(modulus * node.area.max(0.0).sqrt()));
+        let stiffness: Vec<f64> = stiffness.collect();
         let unit = self.unit(stiffness.iter().sum::<f64>() / stiffness.len() as f64).of(&problem.boundary, forces);
         let imbalance = self.rigid.imbalance(&problem.boundary, forces);
         let equilibrium = if unit > 0.0 { imbalance / unit } else { 0.0 };

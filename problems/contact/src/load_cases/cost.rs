@@ -358,11 +358,7 @@ impl OuterFunction for CasesCost {
             let peak = pressures.max();
             if limit.side == LimitSide::AtLeast {
                 let index = range.start + pressures.imax();
-                pieces.push(OutputPiece {
-                    constraint,
-                    value: limit.constraint(peak),
-                    weights: unit(index, -1.0),
-                });
+                pieces.push(OutputPiece { constraint, value: limit.constraint(peak), weights: unit(index, -1.0) });
                 continue;
             }
             let nodes = pressures.iter().enumerate();

@@ -244,7 +244,7 @@ fn forces(
     let status = status.map(|(point, linearization)| linearization.status(point)).collect();
     let kink = Kink::of(boundary, &contact.arguments(iterate));
     let forces = admissible_forces(contact, &forces, &solution.linearizations);
-    let found = configuration.residuals(&contact.operator.model.problem, &forces, &jumps);
+    let found = configuration.residuals(&contact.operator.model.problem, &forces, &jumps, contact.stiffness);
     // Subdomains are in equilibrium as well as bodies.
     let imbalance = contact.imbalance(&iterate.multipliers) * contact.load / load;
     let equilibrium = found.equilibrium.max(imbalance);

@@ -62,10 +62,10 @@ fn cone_programs_keep_within_their_work() {
     }
 }
 
-/// Scene 1401 of seed 3 of the random study: a thin plate that contact holds against a push. Continuation ends at a
-/// fold. Which of its states are found hangs on rounding: of 20 shapes that differ by 1e-9, cone programs solve some.
+/// Scene 1401 of seed 3 of the random study: a thin plate that contact holds against a push. In the unit of its mean
+/// compliance, which bending makes large, the continuation ended at a fold for some of 20 shapes that differ by 1e-9.
 #[test]
-fn the_last_resort_finds_what_continuation_loses() {
+fn continuation_finds_the_states_of_a_thin_plate() {
     let height = 1.9529823602574257;
     let size = [1.0869691108670812e1, 1.5321819622461916e-1];
     let traction = [-1.3464520863463144e-3, 4.64168935388694e-3, 1.2777216699740348e-2];
@@ -80,17 +80,11 @@ fn the_last_resort_finds_what_continuation_loses() {
         heights.bounds = ShapeBounds { minimum_height: 0.19, slope: 1e9, volume: [0.0, 1e27] };
     });
     let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).unwrap())).unwrap();
-    let mut rescued = 0;
     for seed in 0..20 {
         let wave = |control: usize| (1.3 * control as f64 + f64::from(seed)).sin();
         let controls: Vec<f64> = (0..16).map(|control| height * (1.0 + 1e-9 * wave(control))).collect();
-        let Ok(state) = solver.solve(&controls, None, 1e-12) else { continue };
-        let Some(reason) = &state.reason else { continue };
-        assert!(reason.contains("cone program"), "{reason}");
+        let state = solver.solve(&controls, None, 1e-12).unwrap();
+        assert_eq!(state.reason, None, "{seed}");
         assert!(state.forces.residuals.largest() < 1e-8, "{}", state.forces.residuals);
-        let work = state.work();
-        assert!(work.dense_factorizations > work.newton_steps, "{work:?}");
-        rescued += 1;
     }
-    assert!(rescued >= 2, "{rescued} of 20 states by cone programs");
 }

@@ -157,9 +157,15 @@ pub fn solve_by_successive_approximations(
     }
     // Motions of the bodies have taken an approach away that the unit of forces counts.
     if let Some((finer, moved)) = contact.finer(&iterate) {
-        let (mut solution, counts) = solve_by_successive_approximations(&finer, Some(&state.warm.x), settings)?;
-        add_scaled(&mut solution.iterate.amplitudes, 1.0, &moved);
-        return Ok((solution, counts.after(state.counts)));
+        match solve_by_successive_approximations(&finer, Some(&state.warm.x), settings) {
+            Ok((mut solution, counts)) => {
+                add_scaled(&mut solution.iterate.amplitudes, 1.0, &moved);
+                return Ok((solution, counts.after(state.counts)));
+            }
+            // What does not converge any further is left to the certificate.
+            Err(ContactError::NotConverged { .. } | ContactError::NoContraction { .. }) => {}
+            Err(error) => return Err(error),
+        }
     }
     Ok((contact.solution(iterate, residual, state.counts.fixed_point_steps), state.counts))
 }
