@@ -6,6 +6,7 @@ mod accuracy;
 mod composite;
 mod examples;
 mod headline;
+mod meshes;
 mod pins;
 mod stability;
 mod tutorial;

@@ -1,6 +1,6 @@
 //! A mesh written as a file of version 2.2 or 4.1, as text or binary.
 
-use crate::model::{Element, Model, dimension};
+use super::model::{Element, Model, dimension};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 
