@@ -165,6 +165,12 @@ impl ContactScene {
         self.case.scene.name.clone()
     }
 
+    /// What is to be said of the meshes of the scene before any work.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.case.notes.clone()
+    }
+
     /// Whether the controls are heights of a surface; else they are displacements of the control points of a lattice.
     #[getter]
     fn has_heights(&self) -> bool {

@@ -263,6 +263,27 @@ def test_what_lists_of_bodies_do_not_take_is_refused():
         contact.Scene.from_mesh(corners, [range(8)], {"head": [[4, 5, 6, 7]]}, SCENES / "stack.toml")
 
 
+def test_facets_and_cells_of_arrays_count_once():
+    corners = [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
+
+    def scene(cells, foot):
+        return contact.Scene.from_mesh(
+            corners, cells, {"foot": foot, "head": [[4, 5, 6, 7]], "side": [[0, 3, 7, 4]]},
+            name="one cell", friction=0.2, contact={"face": "head"},
+            body={"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
+                  "loads": [{"face": "foot", "pressure": 5.0}],
+                  "supports": [{"face": "side", "held": ["u1", "u2"]}]},
+            counter_surface={"form": "plane", "height": 10.5},
+            lattice={"control_points": [2, 2, 2], "displacement": [-1.0, 1.0]})
+
+    once = scene([range(8)], [[0, 1, 2, 3]])
+    twice = scene([range(8), [1, 2, 3, 0, 5, 6, 7, 4]], [[0, 1, 2, 3], [3, 0, 2, 1], [0, 1, 2, 3]])
+    assert same_bits(once.evaluate().pressures, twice.evaluate().pressures)
+    assert not [note for note in once.notes if "more than once" in note]
+    told = [note for note in twice.notes if "more than once" in note]
+    assert len(told) == 1 and "1 facet and 1 cell are listed more than once; each counts once" in told[0]
+
+
 def test_a_scene_is_shown_before_and_after_its_solve(tmp_path):
     scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
     page = scene.show()

@@ -123,7 +123,7 @@ pub enum Component {
     Normal,
 }
 
-/// A body as a mesh from a Gmsh file (4.1, text or binary): hexahedra of 8 nodes, tetrahedra of 4 or 10 nodes.
+/// A body as a mesh from a Gmsh file (4.1 or 2.2, text or binary): hexahedra of 8 nodes, tetrahedra of 4 or 10 nodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshBodySection {

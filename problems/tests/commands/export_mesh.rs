@@ -65,3 +65,30 @@ fn raised(hold: &str) {
     let mesh = exchange::gmsh::read(&nodes).unwrap();
     assert!(grid.contains(&format!("NumberOfPoints=\"{}\"", mesh.nodes.len())) && grid.contains("Name=\"change\""));
 }
+
+/// Four hexahedra with the faces between their halves, groups that overlap, and tags of groups as a user set them.
+const LAYERS: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n2 77 \"foot\"\n2 5 \"head\"\n2 9 \"ends\"\n\
+    2 40 \"between\"\n3 6 \"body\"\n$EndPhysicalNames\n$Nodes\n12\n1 0 0 0\n2 9 0 0\n3 9 9 0\n4 0 9 0\n5 0 0 5\n\
+    6 9 0 5\n7 9 9 5\n8 0 9 5\n9 0 0 9\n10 9 0 9\n11 9 9 9\n12 0 9 9\n$EndNodes\n$Elements\n7\n1 3 2 77 1 1 2 3 4\n\
+    2 3 2 9 1 1 2 3 4\n3 3 2 5 2 9 10 11 12\n4 3 2 9 2 9 10 11 12\n5 3 2 40 3 5 6 7 8\n6 5 2 6 1 1 2 3 4 5 6 7 8\n\
+    7 5 2 6 1 5 6 7 8 9 10 11 12\n$EndElements\n";
+
+#[test]
+fn an_exported_mesh_keeps_surfaces_between_cells_and_tags_of_groups() {
+    let folder = kit::scratch();
+    std::fs::write(folder.path().join("layers.msh"), LAYERS).unwrap();
+    let scene = folder.path().join("layers.toml");
+    let fields = "name = \"layers\"\nfriction = 0.2\ncontact = { face = \"head\" }\n\
+        counter_surface = { form = \"plane\", height = 9.5 }\n[body]\nmesh = \"layers.msh\"\n\
+        material = { young_modulus = 1e5, poisson_ratio = 0.3 }\nsupports = [{ face = \"foot\", held = [\"u1\", \"u2\", \"u3\"] }]\n\
+        [lattice]\ncontrol_points = [2, 2, 2]\nfixed = [\"between\"]\ndisplacement = [-1.0, 1.0]\n";
+    std::fs::write(&scene, fields).unwrap();
+    let out = folder.path().join("shape");
+    kit::json(CONTACT, &[text(&scene), "export", "--out", text(&out), "--json"]);
+    let mesh = exchange::gmsh::read(&std::fs::read(out.join("lower_body.msh")).unwrap()).unwrap();
+    let sizes: Vec<(&str, usize)> = mesh.surfaces.iter().map(|(name, facets)| (&**name, facets.len())).collect();
+    assert_eq!(sizes, [("between", 1), ("ends", 2), ("foot", 1), ("head", 1)]);
+    assert!(mesh.node_groups.is_empty() && mesh.facets.len() == 3, "{mesh:?}");
+    let tags: Vec<(&str, u32)> = mesh.group_tags.iter().map(|((_, name), tag)| (&**name, *tag)).collect();
+    assert_eq!(tags, [("between", 40), ("ends", 9), ("foot", 77), ("head", 5), ("body", 6)]);
+}

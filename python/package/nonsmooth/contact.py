@@ -298,6 +298,12 @@ class Scene:
         return self._scene.name
 
     @property
+    def notes(self):
+        """What the command line says of the meshes of the scene before any work: their size in mm, cells of poor shape, surfaces between
+        cells, facets and cells that are listed more than once and count once."""
+        return self._scene.notes
+
+    @property
     def start(self):
         """Controls at the start, mm: heights in the shape of the control points of a block, displacements of those of a lattice."""
         return self._scene.start
