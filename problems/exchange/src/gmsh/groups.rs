@@ -39,8 +39,8 @@ impl Groups {
         self.names.get(&key).cloned().unwrap_or_else(|| key.1.to_string())
     }
 
-    /// Tags of the groups by dimension and name. Groups of points and of lines become groups of nodes: where two of these
-    /// have one tag, the second one gets a free one.
+    /// Tags of the groups by dimension and name. Groups of points and of lines become groups of nodes: where two of
+    /// these have one tag, the second one gets a free one.
     pub(super) fn tags(&self) -> BTreeMap<(usize, String), u32> {
         let (mut tags, mut used, mut others) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
         for &key in self.members.keys() {

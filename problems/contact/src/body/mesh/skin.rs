@@ -56,7 +56,8 @@ impl Mesh {
         Ok(found)
     }
 
-    /// Whether the corners of two faces, each counterclockwise seen from outside of its cell, go round in opposite ways.
+    /// Whether the corners of two faces, each counterclockwise seen from outside of its cell, go round in opposite
+    /// ways.
     fn are_opposite(&self, one: CellFace, other: CellFace) -> bool {
         let corners = |face: CellFace| {
             let (mut nodes, corners) = self.face_with_corners(face);

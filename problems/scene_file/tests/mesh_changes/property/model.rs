@@ -98,7 +98,8 @@ impl Model {
         faces.iter().map(|face| face.iter().map(|&corner| nodes[corner]).collect()).collect()
     }
 
-    /// How many facets and cells are listed more than once; with `by_group` an element is listed for each of its groups.
+    /// How many facets and cells are listed more than once; with `by_group` an element is listed for each of its
+    /// groups.
     pub fn repeated(&self, by_group: bool) -> [usize; 2] {
         [2, 3].map(|dimension| {
             let mut listed = HashMap::new();
@@ -119,8 +120,8 @@ fn ascending(mut nodes: Vec<usize>) -> Vec<usize> {
     nodes
 }
 
-/// A mesh of the folder `exchange/tests/data` with groups by place: six sides, one that overlaps two of them, two halves
-/// and the facets between them, points and lines.
+/// A mesh of the folder `exchange/tests/data` with groups by place: six sides, one that overlaps two of them, two
+/// halves and the facets between them, points and lines.
 pub fn base(file: &str, second_order: bool) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../exchange/tests/data").join(file);
     let mesh = read(&std::fs::read(path).unwrap()).unwrap();
