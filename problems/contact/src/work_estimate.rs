@@ -7,8 +7,10 @@
 //! The law of v was measured from 7³ to 10³ nodes. The decision must not depend on time or load, so that a run can be
 //! repeated.
 
-use crate::equilibrium::Work;
-use crate::scene::{BodySize, Scene, SceneSize};
+use crate::body::elasticity::Material;
+use crate::body::mesh::CellKind;
+use crate::equilibrium::{ContactProblem, Work};
+use crate::scene::{BodySize, Geometry, Scene, SceneSize};
 use crate::solvers::SolverKind;
 
 /// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of
@@ -20,6 +22,18 @@ const CONTACT_LAST: f64 = 1.3;
 const EXPECTED_STEPS: f64 = 5.0;
 /// Newton steps on condensed bodies that are always allowed: nine tenths of the states need fewer.
 const MIN_STEPS: usize = 60;
+/// Operations per second of sparse and dense factorisations on two cores: large dense blocks.
+const FACTORING: f64 = 3.0e10;
+/// The same of total FETI: small factors, and solves, which wait for memory.
+const SOLVING: f64 = 4.5e9;
+/// Products with F of a state with its adjoint, for cubes of bricks in one body.
+const EXPECTED_PRODUCTS: f64 = 60.0;
+/// Its factors for pieces of meshes, whose boundaries are rough, for tetrahedra, for pairs of bodies, and for nearly
+/// incompressible material.
+const ROUGH: f64 = 1.7;
+const TETRAHEDRA: f64 = 1.5;
+const PAIRS: f64 = 1.5;
+const INCOMPRESSIBLE: f64 = 4.0;
 
 /// Values of the Cholesky factor of a box with `dofs` dofs.
 pub(crate) fn factor_values(dofs: f64) -> f64 {
@@ -60,6 +74,12 @@ impl WorkEstimate {
         ((self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
     }
 
+    /// Seconds of a state with its adjoint by direct condensation and by total FETI, on two cores of 2025, roughly.
+    pub(crate) fn seconds(&self, problem: &ContactProblem) -> [f64; 2] {
+        let direct = (self.condensation + EXPECTED_STEPS * self.condensed_step) / FACTORING;
+        [direct, (self.torn_factorization + expected_products(problem) * self.product) / SOLVING]
+    }
+
     /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of a usual state.
     pub(crate) fn condensed_steps_per_products(&self, products: usize) -> usize {
         ((products as f64 * self.product / self.condensed_step) as usize).max(MIN_STEPS)
@@ -72,4 +92,20 @@ impl WorkEstimate {
         let condensed = condensation + work.dense_factorizations as f64 * self.condensed_step;
         torn + work.dual_operator_applications as f64 * self.product + condensed
     }
+}
+
+/// Products with F that total FETI is expected to take for a state with its adjoint. They grow with the condition of the
+/// subdomains: with the proportions of the cells, and with the root of the root of the contrast of the materials.
+fn expected_products(problem: &ContactProblem) -> f64 {
+    let scene = &problem.scene;
+    let is_mesh = scene.bodies.iter().any(|body| matches!(body.geometry, Geometry::Mesh(_)));
+    let has_tetrahedra = problem.bodies.iter().any(|body| body.mesh.cells().any(|cell| cell.kind == CellKind::Tet10));
+    let has_pairs = scene.contacts.iter().any(|contact| contact.master_face().is_some());
+    let is_incompressible = problem.materials().any(|material| material.compressible_neighbour().is_some());
+    let factors =
+        [(is_mesh, ROUGH), (has_tetrahedra, TETRAHEDRA), (has_pairs, PAIRS), (is_incompressible, INCOMPRESSIBLE)];
+    let moduli = || problem.materials().map(Material::young_modulus);
+    let contrast = moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min);
+    let factor: f64 = factors.iter().filter(|(applies, _)| *applies).map(|(_, factor)| factor).product();
+    EXPECTED_PRODUCTS * factor * (0.5 * problem.aspect()).max(1.0) * contrast.sqrt().sqrt()
 }

@@ -34,6 +34,11 @@ impl CellShapes {
         Self { aspect: median(aspects.collect()), along_normal: median(ratios.collect()) }
     }
 
+    /// The proportions of the edges: the longest over the shortest one.
+    pub fn aspect(&self) -> f64 {
+        self.aspect
+    }
+
     /// The proportions of the edges, where they are extreme.
     pub fn extreme_aspect(&self) -> Option<f64> {
         (self.aspect >= EXTREME).then_some(self.aspect)

@@ -169,6 +169,11 @@ impl ContactProblem {
         Some(format!("cells have edges 1 : {aspect:.0}"))
     }
 
+    /// The proportions of the cells of a body, the worst one.
+    pub(crate) fn aspect(&self) -> f64 {
+        self.shapes.iter().map(CellShapes::aspect).fold(1.0, f64::max)
+    }
+
     /// The proportions of cells that are plates on the contact face or rods across it, where they are extreme.
     pub(crate) fn flat_or_tall(&self) -> Option<f64> {
         self.shapes.iter().filter_map(CellShapes::flat_or_tall).reduce(f64::max)

@@ -1,10 +1,11 @@
 //! The contact solver of one process: total FETI, direct condensation, or the choice between them.
 //!
-//! The choice takes total FETI first, for at most as many products with F as a state by direct condensation costs, and
-//! direct condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct
-//! condensation where total FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a
-//! shape similar to one that needed it) and where Jacobians are wanted that cost less there. Sizes and counted work
-//! alone decide, so that a resumed run repeats the choice. Bodies too large to be condensed leave total FETI alone.
+//! The choice takes what an estimate of both ways says is faster: total FETI, for at most as many products with F as a
+//! state by direct condensation costs, and direct condensation where it finds no state, or none that is clearly
+//! accurate; or direct condensation first. This comes first as well where total FETI loses digits (nearly
+//! incompressible standard bricks, bricks of extreme shape), for a shape similar to one that needed it, and where
+//! Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats the
+//! choice. Bodies too large to be condensed leave total FETI alone.
 
 use crate::direct::{CondensedShelf, DirectSolver, DirectState};
 use crate::equilibrium::{
@@ -30,6 +31,9 @@ const COMFORTABLE_SHARE: f64 = 1e-4;
 /// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time
 /// with all its derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
 const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
+/// Estimated time of total FETI over that of direct condensation above which the latter comes first: estimates are
+/// rough, and what total FETI finds has residuals that know of all rounding.
+const CLEARLY_SLOWER: f64 = 1.25;
 
 /// Total FETI and direct condensation, each prepared when it is needed.
 #[derive(Debug)]
@@ -60,10 +64,16 @@ impl Order {
         if memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1) > MAX_CONDENSED_BYTES {
             return Self::Torn(DualMethod::default());
         }
-        let products = WorkEstimate::of(scene).products_per_condensed_state();
+        let estimate = WorkEstimate::of(scene);
+        let products = estimate.products_per_condensed_state();
         let max_products = products.max(MIN_PRODUCTS);
-        let cheaper = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
-        let cheaper = cheaper.then(|| "Jacobians of all pressures cost least there".to_owned());
+        let with_jacobians = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
+        let [direct, torn] = estimate.seconds(problem);
+        let cheaper = match (with_jacobians, torn > CLEARLY_SLOWER * direct) {
+            (true, _) => Some("Jacobians of all pressures cost least there".to_owned()),
+            (false, true) => Some(format!("it takes an estimated share of {:.2} of the time", direct / torn)),
+            (false, false) => None,
+        };
         match problem.ill_conditioned().or(cheaper) {
             Some(reason) => Self::DirectFirst(max_products, reason),
             None => Self::TornFirst(max_products),
