@@ -10,6 +10,7 @@ use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::AnyState;
+use contact::cost::LimitSide;
 use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::load_cases::CaseStates;
@@ -19,11 +20,11 @@ use contact::standstill::standstill;
 use nonsmooth::interruption::watched;
 use nonsmooth::{Accuracy, OracleError, Report, StateSolver, VariableScaling, Vector};
 use numpy::PyArrayDyn;
-use problems::commands::{look_page, solved_page};
+use problems::commands::{look_page, raised, solved_page};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use scene_file::{AccuracyName, Case, FILES, MeasureName, MethodName, SceneFile, read_text};
+use scene_file::{AccuracyName, Case, FILES, MethodName, SceneFile, read_text};
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -76,21 +77,15 @@ pub fn new_scene(mesh: std::path::PathBuf) -> PyResult<std::path::PathBuf> {
     problems::commands::new_scene(&mesh).map_err(failed)
 }
 
-/// The measure of a scene's table, if it is told.
-fn measure(table: &toml::Table) -> Option<MeasureName> {
-    table.get("objective")?.get("measure")?.clone().try_into().ok()
-}
-
-/// Sets the fields of a table to others, field by field in nested tables.
-fn merge(table: &mut toml::Table, fields: toml::Table) {
+/// Replaces the fields of a table, whole tables included, as the option --set does; null removes one.
+fn replace(table: &mut toml::Table, fields: serde_json::Map<String, serde_json::Value>) -> Result<(), toml::ser::Error> {
     for (name, value) in fields {
-        match (table.get_mut(&name), value) {
-            (Some(toml::Value::Table(old)), toml::Value::Table(new)) => merge(old, new),
-            (_, value) => {
-                table.insert(name, value);
-            }
+        match value {
+            serde_json::Value::Null => _ = table.remove(&name),
+            value => _ = table.insert(name, toml::Value::try_from(value)?),
         }
     }
+    Ok(())
 }
 
 #[pymethods]
@@ -106,12 +101,7 @@ impl ContactScene {
                 .map_err(|error| bad(&error))?,
             None => toml::Table::new(),
         };
-        let fields: toml::Table = serde_json::from_str(fields).map_err(|error| bad(&error))?;
-        if measure(&fields).is_some_and(|new| new != measure(&table).unwrap_or_default()) {
-            // Fields of the section belong to the measure of the file, as for the option --objective.
-            table.remove("objective");
-        }
-        merge(&mut table, fields);
+        replace(&mut table, serde_json::from_str(fields).map_err(|error| bad(&error))?).map_err(|error| bad(&error))?;
         let mesh = mesh.map(|mesh| mesh.mesh()).transpose()?;
         if mesh.is_some() {
             if table.get("body").is_some_and(toml::Value::is_array) {
@@ -119,7 +109,10 @@ impl ContactScene {
                 return Err(input(SceneError::out_of_range("mesh", "given for a list of bodies", allowed)));
             }
             let [.., name] = FILES;
-            merge(&mut table, toml::toml! { body = { mesh = name } });
+            let body = table.entry("body").or_insert_with(|| toml::Table::new().into());
+            if let toml::Value::Table(body) = body {
+                body.insert("mesh".into(), (*name).into());
+            }
         }
         let text = toml::to_string(&table).map_err(|error| bad(&error))?;
         let file = SceneFile::parse(&text, name).map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -190,7 +183,8 @@ impl ContactScene {
         convert::shaped(py, self.case.start_controls(), &self.control_shape())
     }
 
-    /// Θ, its subgradient, and the state at controls in row-major order; with its fields and warnings if asked for.
+    /// Θ, its subgradient, and the state at controls in row-major order; with its fields and warnings if asked for, else
+    /// with the limits as constraints.
     fn evaluate<'py>(
         &self,
         py: Python<'py>,
@@ -203,7 +197,10 @@ impl ContactScene {
         solver.problem().admissible.check_shape(&controls).map_err(shape)?;
         let solve = || {
             let states = objective.cases().solve(&controls, None, Accuracy::TIGHTEST)?;
-            let evaluation = objective.differentiate(&controls, &states)?;
+            let evaluation = match checks {
+                true => objective.differentiate(&controls, &states)?,
+                false => objective.differentiate_with_limits(&controls, &states)?,
+            };
             let checked = |case: usize| {
                 let shape = objective.cases().case(case);
                 Ok::<_, OracleError>((shape.warnings(&states[case])?, shape.fields(&states[case])?))
@@ -223,10 +220,16 @@ impl ContactScene {
         let gradient = convert::shaped(py, evaluation.subgradient.as_slice().to_vec(), &self.control_shape())?;
         result.set_item("gradient", gradient)?;
         if checked.is_empty() {
+            let limits = evaluation.constraints.as_ref();
+            let (count, rows) = limits.map_or((0, None), |limits| (limits.values.len(), Some(&limits.jacobian)));
+            let entry = |i: usize, j: usize| rows.map_or(0.0, |rows| rows[(i, j)]);
+            result.set_item("limits", convert::array2(py, count, controls.len(), entry)?)?;
+            let values = limits.map_or_else(|| Vector::zeros(0), |limits| limits.values.clone());
+            result.set_item("limit_values", convert::array(py, &values))?;
             return Ok(result);
         }
         result.set_item("root", objective.root())?;
-        result.set_item("unit", objective.unit())?;
+        result.set_item("unit", raised(&objective.unit()))?;
         result.set_item("norm_in_mpa", objective.norm_in_mpa(evaluation.value))?;
         result.set_item("error_bound", evaluation.error_bound)?;
         set_cases(&result, objective, &states, &checked)?;
@@ -234,10 +237,13 @@ impl ContactScene {
         Ok(result)
     }
 
-    /// The admissible controls: bounds, rows, sides of the rows.
+    /// The admissible controls: bounds, rows, sides of the rows; and of every limit, whether it is an equality.
     fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let set = self.objective(py)?.solver().problem().admissible.polyhedron();
+        let objective = self.objective(py)?;
+        let set = objective.solver().problem().admissible.polyhedron();
         let result = PyDict::new(py);
+        let equal: Vec<bool> = objective.limits().map(|limit| limit.side == LimitSide::Equal).collect();
+        result.set_item("limits", equal)?;
         result.set_item("lower", convert::array(py, set.lower()))?;
         result.set_item("upper", convert::array(py, set.upper()))?;
         let rows = set.rows();

@@ -34,7 +34,7 @@ def test_the_state_at_the_start_is_that_of_the_method_page(signorini):
     assert state.pressures.shape == (13, 13) and state.gradient.shape == (6, 6)
     assert (state.pressures[state.status == contact.OPEN] == 0).all()
     assert abs((np.maximum(state.pressures, 0) ** 4).sum() / state.theta - 1) < 1e-12
-    assert state.unit == "MPa^{4}" and state.root == 1
+    assert state.unit == "MPa⁴" and state.root == 1
 
 
 def test_the_gradient_passes_the_taylor_test():
@@ -58,7 +58,7 @@ def test_optimize_ends_as_the_command_does(signorini):
     [
         ({"measure": "compliance"}, "N mm"),
         ({"measure": "stress-norm"}, "MPa"),
-        ({"measure": "pressure-deviation", "wanted": {"form": "formula", "pressure": "3000"}}, "MPa^{2}"),
+        ({"measure": "pressure-deviation", "wanted": {"form": "formula", "pressure": "3000"}}, "MPa²"),
     ],
 )
 def test_other_objectives_have_derivatives_and_optima(objective, unit):
@@ -84,7 +84,7 @@ def test_a_scene_weighs_nodes_by_their_area_unless_it_says_nodes(signorini):
     nodes = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
     area = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, objective={"weight": "area"})
     first, second = nodes.evaluate(), area.evaluate()
-    assert (first.unit, second.unit) == ("MPa^{4}", "MPa^{4}·mm^{2}")
+    assert (first.unit, second.unit) == ("MPa⁴", "MPa⁴·mm²")
     cells = np.full((5, 5), 625.0)
     for edge in (cells[0], cells[-1], cells[:, 0], cells[:, -1]):
         edge /= 2
@@ -325,3 +325,33 @@ def test_values_over_the_contact_nodes_are_drawn(file):
         matplotlib.pyplot.close(axes.figure)
     with pytest.raises(ValueError, match="pressures, gaps"):
         state.plot("stresses")
+
+
+LIMITED = {"friction": 0.1, "limit": [{"quantity": "peak-pressure", "at_most": 3000.0}, {"quantity": "volume", "at_most": 1.001e6}]}
+
+
+def test_limits_are_constraints_with_gradients_for_other_optimizers():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, **LIMITED)
+    _bounds, (_rows, limits) = scene.constraints
+    start = scene.start.ravel()
+    direction = np.cos(np.arange(start.size))
+    values = [limits.fun(start + step * direction) for step in (1e-4, -1e-4)]
+    slopes = limits.jac(start) @ direction
+    assert np.allclose((values[0] - values[1]) / 2e-4, slopes, rtol=1e-4)
+    state = scene.evaluate()
+    excess = [own["value"] - own["at_most"] for own in state.limits]
+    assert np.allclose(limits.fun(start), excess, rtol=1e-9)
+
+
+def test_the_violation_of_limits_is_told():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, limit=[{"quantity": "peak-pressure", "at_most": 100.0}])
+    result = scene.optimize(options={"max_evaluations": 2})
+    assert not result.success
+    assert result.constr_violation == max(own["excess"] for own in result.limits) > 1.0
+
+
+def test_fields_replace_tables_and_none_removes():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, counter_surface={"form": "plane", "height": 103.0})
+    assert "first" not in scene.to_toml().split("[counter_surface]")[1].split("[surface]")[0]
+    same = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, optimizer=None)
+    assert same.name == scene.name

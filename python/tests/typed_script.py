@@ -72,6 +72,6 @@ print(nonsmooth.taylor_test(fun, [1.0, 3.0]).right)
 scene = Scene.from_toml("scene.toml", friction=0.3)
 state = scene.evaluate()
 print(state.theta, (state.status == SLIP).sum())
-bounds, rows = scene.constraints
-nonsmooth.minimize(scene.fun, scene.start.ravel(), bounds=bounds, constraints=rows)
+bounds, constraints = scene.constraints
+nonsmooth.minimize(scene.fun, scene.start.ravel(), bounds=bounds, constraints=constraints)
 scene.optimize(options={"max_evaluations": 3})

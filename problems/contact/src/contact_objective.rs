@@ -164,6 +164,21 @@ impl<S: ContactSolver> ContactObjective<S> {
         self.composed.differentiate(control, states)
     }
 
+    /// As [`Self::differentiate`], with all limits as constraints c = ±(value − bound) ≤ 0 (= 0 for equalities) in the
+    /// order of [`Self::limits`], and their gradients.
+    ///
+    /// # Errors
+    /// As [`Self::differentiate`].
+    pub fn differentiate_with_limits(
+        &self,
+        control: &Vector,
+        states: &CaseStates<S::State>,
+    ) -> Result<Evaluation<Vec<ContactWarmStart>>, OracleError> {
+        let mut evaluation = self.composed.evaluate_at(&Request::tight(control), states)?;
+        self.add_constraints(control, states, &mut evaluation)?;
+        Ok(evaluation)
+    }
+
     /// The derivative of Θ by the position of every node of the lower body along the axes at states already found, unit
     /// of Θ per mm; 0 for nodes that no control moves.
     ///

@@ -54,6 +54,7 @@ pub use interrupt::leave_interrupts;
 pub use long_run::StageLayer;
 pub use look::page as look_page;
 pub use new_scene::new_scene;
+pub use numbers::raised;
 pub use output::{arguments, finish, notice, print, print_failure};
 pub use report::solved_page;
 pub use solved_shape::{ContactObjective, SolvedShape, objective};

@@ -124,7 +124,7 @@ class Result(OptimizeResult):
         Values of the nonlinear constraints at x: first those of ``constraint_kinds``, then an array for each object. A component
         without any side is NaN.
     constr_violation : float
-        The largest violation among these values, each in its own unit; 0 without nonlinear constraints.
+        The largest violation among these values, or of the limits of a scene, each in its own unit; 0 without any.
     multipliers : list of ndarray
         Multipliers v of these values, for the Lagrangian ``fun(x) + sum(v * c(x))``, as in ``scipy``'s trust-constr: v > 0 where
         the upper side is active, v < 0 at the lower side, either sign for an equality.
@@ -183,9 +183,12 @@ _ONE_OUTPUT = {"function": "max", "exponent": 1.0, "groups": None, "weight": Non
 
 def build(outcome, outer=None, nonlinear=None):
     """The result of a run of the engine."""
-    found = {"constr": [], "constr_violation": 0.0, "multipliers": []}
+    reports = json.loads(outcome.constraints)
+    worst = [abs(own["value"]) if own["kind"] == "smooth_equality" else own["value"] for own in reports]
+    # Limits of a scene: constraints that are told in `limits`.
+    found = {"constr": [], "constr_violation": max(worst + [0.0]), "multipliers": []}
     if nonlinear:
-        found = nonlinear.found(json.loads(outcome.constraints))
+        found = nonlinear.found(reports)
         outer = outer or _ONE_OUTPUT
     counts = json.loads(outcome.counts)
     reason = outcome.reason
@@ -213,7 +216,7 @@ def build(outcome, outer=None, nonlinear=None):
         warnings=outcome.warnings,
         limits=[
             {"excess": found["value"], "satisfied": found["satisfied"], "multiplier": found["multiplier"]}
-            for found in json.loads(outcome.constraints)
+            for found in reports
         ],
     )
     # No entry of the dict: it is not for users.

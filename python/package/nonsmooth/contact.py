@@ -222,7 +222,7 @@ class Scene:
 
     def _open(self, path, fields, mesh=None):
         """The engine's scene, and what it is made of, for copies in other processes."""
-        self._made_of = path, json.dumps(_plain(fields, "")), mesh
+        self._made_of, self._last = (path, json.dumps(_fields(fields)), mesh), None
         self._scene = _ContactScene(*self._made_of)
 
     def __reduce__(self):
@@ -231,6 +231,8 @@ class Scene:
     @classmethod
     def from_toml(cls, path, **fields):
         """The scene of a file, with fields changed: ``Scene.from_toml("hertz.toml", friction=0.5, mesh={"bricks": [6, 6, 6]})``.
+
+        A field replaces that of the file as a whole, nested tables included, as the option ``--set`` does; ``None`` removes it.
 
         Parameters
         ----------
@@ -310,13 +312,23 @@ class Scene:
 
     @property
     def constraints(self):
-        """Admissible controls, flattened: ``(bounds, constraint)`` as scipy's objects, for `nonsmooth.minimize`."""
-        from scipy.optimize import Bounds, LinearConstraint
+        """All that the scene limits, as scipy's objects: ``(bounds, constraints)`` for `nonsmooth.minimize` and others.
+
+        ``constraints`` is a list: the rows of the admissible set as a ``LinearConstraint`` and, where the scene has limits, a
+        ``NonlinearConstraint`` with a component per limit and load case. A component is the quantity minus ``at_most``, or
+        ``at_least`` minus the quantity, in the unit of the quantity: at most 0. `fun` and the constraint share the last state.
+        """
+        from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
         _check_process()
         arrays = self._scene.constraints()
-        rows = LinearConstraint(arrays["rows"], arrays["row_lower"], arrays["row_upper"])
-        return Bounds(arrays["lower"], arrays["upper"]), rows
+        constraints = [LinearConstraint(arrays["rows"], arrays["row_lower"], arrays["row_upper"])]
+        if arrays["limits"]:
+            least = np.where(arrays["limits"], 0.0, -np.inf)
+            values = lambda controls: self._with_limits(controls)["limit_values"].copy()
+            slopes = lambda controls: self._with_limits(controls)["limits"].copy()
+            constraints.append(NonlinearConstraint(values, least, np.zeros(least.size), jac=slopes))
+        return Bounds(arrays["lower"], arrays["upper"]), constraints
 
     def to_toml(self):
         """The scene as a complete commented file. A mesh given as arrays is not part of it: the file names ``body.mesh``."""
@@ -380,11 +392,18 @@ class Scene:
         tuple of float and ndarray
             Theta and its subgradient.
         """
-        try:
-            found = self._solved(controls, False)
-        except RuntimeError as error:
-            raise OutsideDomain(str(error)) from error
+        found = self._with_limits(controls)
         return found["value"], found["gradient"].ravel()
+
+    def _with_limits(self, controls):
+        """Theta and all limits with their gradients, of the last shape without another solve."""
+        shape = np.array(controls, dtype=float).tobytes()
+        if self._last is None or self._last[0] != shape:
+            try:
+                self._last = shape, self._solved(controls, False)
+            except RuntimeError as error:
+                raise OutsideDomain(str(error)) from error
+        return self._last[1]
 
     def _solved(self, controls, checks):
         """The engine's answer at a shape."""
@@ -489,6 +508,11 @@ def _numbers_of_nodes(value, what):
     if array.dtype.kind not in "iu":
         raise TypeError(f"{what} has numbers of {array.dtype}, expected whole numbers of nodes")
     return _rows(array.astype(np.int64), what)
+
+
+def _fields(fields):
+    """The fields of a scene as JSON has them; None removes one of the file."""
+    return {name: None if value is None else _plain(value, name) for name, value in fields.items()}
 
 
 def _plain(value, path):
