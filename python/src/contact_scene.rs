@@ -78,7 +78,10 @@ pub fn new_scene(mesh: std::path::PathBuf) -> PyResult<std::path::PathBuf> {
 }
 
 /// Replaces the fields of a table, whole tables included, as the option --set does; null removes one.
-fn replace(table: &mut toml::Table, fields: serde_json::Map<String, serde_json::Value>) -> Result<(), toml::ser::Error> {
+fn replace(
+    table: &mut toml::Table,
+    fields: serde_json::Map<String, serde_json::Value>,
+) -> Result<(), toml::ser::Error> {
     for (name, value) in fields {
         match value {
             serde_json::Value::Null => _ = table.remove(&name),

@@ -3,16 +3,23 @@
 use super::config::Convexity;
 use super::constrained::{Constraints, Tangent};
 use super::evidence::active_cuts;
+use super::oracle::OracleResult;
 use super::proof::Proof;
 use super::proposers::proposal::Proposal;
 use super::run::Run;
 use crate::report::{Certificate, ConstraintCut, ConstraintProof, Report, Termination};
+use crate::{Accuracy, Vector};
+
+/// What is said of a plateau.
+const PLATEAU: &str =
+    "plateau: the objective is constant around this point; it says nothing of other points, which may be lower";
 
 impl Run<'_, '_> {
     /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by
     /// itself.
     pub fn finish(mut self) -> Report {
         self.end_at_lowest();
+        let warnings = if self.is_plateau() { vec![PLATEAU.into()] } else { vec![] };
         let proof = match self.proof.take() {
             Some(proof) => Some(proof),
             None => self.ask(|proposers, at| proposers.plain_proof(at)),
@@ -36,9 +43,36 @@ impl Run<'_, '_> {
             counts: state.counts,
             largest_violation: state.history.iter().map(|record| record.violation).fold(0.0, f64::max),
             history: state.history,
-            warnings: vec![],
+            warnings,
             seconds,
         }
+    }
+
+    /// Whether Θ is constant around a stationary center: its subgradient vanishes, and value and subgradient are the
+    /// same a first step away, both ways along a direction without pattern. At a smooth minimum the values differ.
+    fn is_plateau(&mut self) -> bool {
+        let vanishes = |subgradient: &Vector| subgradient.iter().all(|slope| *slope == 0.0);
+        let confirmed = self.termination.as_ref().is_some_and(Termination::is_confirmed);
+        let center = self.state.bundle.cut(self.state.center_id);
+        if !confirmed || !center.is_some_and(|cut| vanishes(&cut.subgradient)) {
+            return false;
+        }
+        let direction = Vector::from_fn(self.state.center.len(), |i, _| (1.7 * i as f64 + 0.5).cos());
+        let direction = &direction * (self.state.first_step / self.state.norm.length(&direction));
+        let (value, unit) = (self.state.center_value, f64::EPSILON * self.state.center_value.abs());
+        let (center, set) = (self.state.center.clone(), self.set.clone());
+        let points = [direction.clone(), -direction].into_iter().map(|step| set.clamp_to_box(&(&center + step)));
+        let points: Vec<Vector> = points.filter(|point| *point != center && set.violation(point) <= 0.0).collect();
+        !points.is_empty()
+            && points.into_iter().all(|point| {
+                match self.evaluate(&point, Accuracy::TIGHTEST, None, f64::NEG_INFINITY) {
+                    OracleResult::Answer(answer) => {
+                        let found = answer.evaluation();
+                        vanishes(&found.subgradient) && (found.value - value).abs() <= 4.0 * unit
+                    }
+                    _ => false,
+                }
+            })
     }
 
     /// A run that ends with nothing to say about its center ends at the lowest point evaluated: a step that brings

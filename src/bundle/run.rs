@@ -206,7 +206,13 @@ impl Run<'_, '_> {
     }
 
     /// Evaluates Θ, with a descent target if there is one; `below` is the value of Θ up to which a Jacobian is wanted.
-    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> OracleResult {
+    pub(super) fn evaluate(
+        &mut self,
+        point: &Vector,
+        accuracy: Accuracy,
+        target: Option<f64>,
+        below: f64,
+    ) -> OracleResult {
         self.state.counts.evaluations += 1;
         self.state.known_trials = 0;
         let linearization = self.outer.map(|_| LinearizationRequest::below(below));

@@ -21,6 +21,7 @@ mod kinks;
 mod linear_scaling;
 mod many_variables;
 mod parts;
+mod plateau;
 mod proposers;
 mod restart;
 mod second_look;
