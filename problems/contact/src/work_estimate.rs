@@ -24,7 +24,7 @@ const EXPECTED_STEPS: f64 = 5.0;
 const MIN_STEPS: usize = 60;
 /// Operations per second of sparse and dense factorisations on two cores: large dense blocks.
 const FACTORING: f64 = 3.0e10;
-/// The same of total FETI: small factors, and solves, which wait for memory.
+/// Operations per second of total FETI: small factors, and solves, which wait for memory.
 const SOLVING: f64 = 4.5e9;
 /// Products with F of a state with its adjoint, for cubes of bricks in one body.
 const EXPECTED_PRODUCTS: f64 = 60.0;
@@ -94,8 +94,8 @@ impl WorkEstimate {
     }
 }
 
-/// Products with F that total FETI is expected to take for a state with its adjoint. They grow with the condition of the
-/// subdomains: with the proportions of the cells, and with the root of the root of the contrast of the materials.
+/// Products with F that total FETI is expected to take for a state with its adjoint. They grow with the condition of
+/// the subdomains: with the proportions of the cells, and with the root of the root of the contrast of the materials.
 fn expected_products(problem: &ContactProblem) -> f64 {
     let scene = &problem.scene;
     let is_mesh = scene.bodies.iter().any(|body| matches!(body.geometry, Geometry::Mesh(_)));

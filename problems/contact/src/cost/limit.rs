@@ -51,8 +51,8 @@ pub struct Limit {
     pub typical: f64,
 }
 
-/// Share of its scale by which a quantity that keeps its bound may be off. Steps along a curved constraint miss it by a little;
-/// steps that do nothing but remove the rest would cost a state each.
+/// Share of its scale by which a quantity that keeps its bound may be off. Steps along a curved constraint miss it by a
+/// little; steps that do nothing but remove the rest would cost a state each.
 const ALLOWANCE: f64 = 1e-6;
 
 impl LimitSide {

@@ -1,10 +1,20 @@
 //! The contact forces of a condensed state in physical units, with what certifies them.
 
 use crate::direct::compliant_contact::CompliantContact;
-use crate::direct::solver::CondensedSolution;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{Configuration, ContactForces, Kink, Residuals};
 use crate::linear::vector::norm;
+
+/// The solution in physical units.
+#[derive(Debug)]
+pub(super) struct CondensedSolution {
+    /// Forces and amplitudes, dimensionless.
+    pub(super) unknowns: Vec<f64>,
+    /// Contact displacements of all bodies less the prescribed ones, mm.
+    pub(super) displacement: Vec<f64>,
+    pub(super) forces: Vec<f64>,
+    pub(super) linearizations: Vec<Linearization>,
+}
 
 /// The contact forces of a solution with status, residuals and kinks.
 pub(super) fn forces(

@@ -11,10 +11,9 @@ use crate::direct::diagnosis::{diagnose, estimate_contraction};
 use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::displacement_tangents::displacement_tangents;
 use crate::direct::force_rounding::change_of_forces;
-use crate::direct::forces::forces;
+use crate::direct::forces::{CondensedSolution, forces};
 use crate::direct::newton::FLOOR_REACHED;
 use crate::direct::tangents::{CondensedTangents, tangents};
-use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, ForceUnit, Positions,
     Sensitivities, SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
@@ -61,17 +60,6 @@ pub struct DirectState {
     load: f64,
     /// Displacements over the dofs of the bodies, once they have been asked for.
     pub(super) displacements: Vec<OnceLock<Vec<f64>>>,
-}
-
-/// The solution in physical units.
-#[derive(Debug)]
-pub(super) struct CondensedSolution {
-    /// Forces and amplitudes, dimensionless.
-    pub(super) unknowns: Vec<f64>,
-    /// Contact displacements of all bodies less the prescribed ones, mm.
-    pub(super) displacement: Vec<f64>,
-    pub(super) forces: Vec<f64>,
-    pub(super) linearizations: Vec<Linearization>,
 }
 
 impl DirectSolver {

@@ -60,8 +60,8 @@ impl Configuration {
         Ok(Self { positions, rows: Arc::new(rows), rigid, grounded, prescribed })
     }
 
-    /// The residuals of packed contact forces, N, and jumps, mm, whatever solver found them; without the residual of its
-    /// own iteration. `bound`: the mean stiffness of a contact node, N/mm, where bodies bend and resist less than E*√A.
+    /// The residuals of packed contact forces, N, and jumps, mm, whatever solver found them; without the residual of
+    /// its own iteration. `bound`: the mean stiffness of a contact node, N/mm, where bodies bend and resist less than E*√A.
     pub(crate) fn residuals(&self, problem: &ContactProblem, forces: &[f64], jumps: &[f64], bound: f64) -> Residuals {
         let nodes = problem.contact_moduli.iter().zip(&self.rows.nodes);
         let stiffness = nodes.map(|(modulus, node)| bound.min(modulus * node.area.max(0.0).sqrt()));
@@ -90,7 +90,7 @@ pub(crate) struct ForceUnit {
 
 /// Share of the loads that contact forces amount to at least: fewer are few digits of them.
 const LEAST_OF_LOADS: f64 = 1e-4;
-/// The same of what the approach of the bodies would press out of them at rest.
+/// Share of what the approach of the bodies would press out of them at rest that contact forces amount to at least.
 const LEAST_OF_APPROACH: f64 = 1e-7;
 
 impl ForceUnit {

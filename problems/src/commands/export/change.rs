@@ -9,7 +9,7 @@
 use crate::commands::export::files::OutputFile;
 use crate::commands::export::mesh::divided;
 use crate::commands::numbers::{exact, number};
-use crate::commands::report::faces_by_name;
+use crate::commands::report::faces_by_names;
 use crate::commands::scene_words::stem;
 use crate::commands::vectors::{cross, dot, minus, sum};
 use contact::body::mesh::{CellFace, Mesh};
@@ -79,10 +79,10 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
     let shaped = problem.scene.bodies.iter().enumerate().filter(|(_, body)| body.shape.is_some());
     for (body, _) in shaped {
         let (mesh, start, end) = (&problem.bodies[body].mesh, &start[body], &end[body]);
-        for (name, faces) in faces_by_name(mesh) {
+        for (names, faces) in faces_by_names(mesh) {
             let sheet = Sheet::new(mesh, &faces);
             let mut sides = problem.scene.contacts.iter().flat_map(ContactScene::faces);
-            let touches = sides.any(|side| side.body == body && side.face == name);
+            let touches = sides.any(|side| side.body == body && names.contains(&side.face));
             if !touches && sheet.of_node.keys().all(|&node| start[node as usize] == end[node as usize]) {
                 continue;
             }
@@ -94,7 +94,7 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
                 let numbers: Vec<String> =
                     from.into_iter().chain(normal).chain([amount]).chain(to).map(exact).collect();
                 let lead = if several { format!("{},", stem(&problem.scene, body)) } else { String::new() };
-                table += &format!("{lead}{},{node},{}\n", quoted(&name), numbers.join(","));
+                table += &format!("{lead}{},{node},{}\n", quoted(&names.join("; ")), numbers.join(","));
             }
         }
     }

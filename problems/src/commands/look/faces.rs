@@ -4,7 +4,7 @@ use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
 use crate::commands::look::case::{LookedCase, by_case};
 use crate::commands::numbers::{exact, number};
-use crate::commands::report::faces_by_name;
+use crate::commands::report::faces_by_names;
 use crate::commands::scene_words;
 use contact::body::mesh::bounding_box;
 use contact::scene::{BodyScene, ContactScene, Load, LoadKind, Scene};
@@ -40,17 +40,22 @@ pub fn face_facts(cases: &[LookedCase]) -> Result<Vec<Fact>, Failure> {
         let words = format!("{nodes} nodes, {cells} cells, x1 = {x1}, x2 = {x2}, x3 = {x3} mm");
         facts.push(Fact::new("", &name, words, ""));
         let mut faces = Vec::new();
-        for (face, own) in faces_by_name(mesh).iter().filter(|(_, own)| !own.is_empty()) {
+        // Names may share facets: every one stands with all that it has.
+        let named = mesh.faces().iter().map(|(name, own)| (name.clone(), own.clone()));
+        let nameless = faces_by_names(mesh).into_iter().filter(|(names, _)| names.is_empty());
+        for (face, own) in named.chain(nameless.map(|(_, own)| (String::new(), own))) {
             let area: f64 = own.iter().map(|face| mesh.face_area(*face, places)).sum();
-            let roles = by_case(cases, |case| roles(&case.problem.scene, index, face, area));
+            let roles = by_case(cases, |case| roles(&case.problem.scene, index, &face, area));
             let shown = if roles.is_empty() { String::new() } else { format!("; {}", roles.join("; ")) };
-            let label = format!("  {}", if face.is_empty() { "without a name" } else { face });
+            let label = format!("  {}", if face.is_empty() { "without a name" } else { &face });
             let words = format!("{} facets, {} mm²{shown}", own.len(), number(area));
             facts.push(Fact::new("", &label, words, ""));
             faces.push(json!({ "name": face, "facets": own.len(), "area": area, "roles": roles }));
         }
-        let volumes = mesh.volumes();
-        list.push(json!({ "name": body.name, "nodes": nodes, "cells": cells, "box": [low, high], "volumes": volumes, "faces": faces }));
+        list.push(json!({
+            "name": body.name, "nodes": nodes, "cells": cells, "box": [low, high], "volumes": mesh.volumes(),
+            "faces": faces, "names_without_elements": mesh.empty_names(),
+        }));
     }
     facts.push(Fact::json("bodies", &list)?);
     Ok(facts)

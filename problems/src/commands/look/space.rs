@@ -3,7 +3,7 @@
 use crate::commands::failure::Failure;
 use crate::commands::look::case::LookedCase;
 use crate::commands::look::faces::{contacts_of, held_on, loads_on};
-use crate::commands::report::{ContactSurface, LIFT, Skin, apart, extent, faces_by_name};
+use crate::commands::report::{ContactSurface, LIFT, Skin, apart, extent, faces_by_names};
 use crate::commands::scene_words;
 use contact::scene::Scene;
 use figures::{Space, SpaceBody, SpaceField, SpaceShape, SpaceState, SpaceView, View, nice_below};
@@ -14,8 +14,8 @@ const CLASSES: [&str; 5] = ["free", "may touch", "loaded", "held", "held and loa
 /// A part of the view.
 struct Part {
     name: String,
-    /// Its body and face; none of an obstacle.
-    face: Option<(usize, String)>,
+    /// Its body and the names of its facets; none of an obstacle.
+    face: Option<(usize, Vec<String>)>,
     numbers: Vec<u32>,
     faces: Vec<Vec<usize>>,
     places: Vec<[f64; 3]>,
@@ -74,17 +74,17 @@ fn parts(LookedCase { problem, positions, rows, .. }: &LookedCase, surfaces: &[C
     let ways = apart(&problem.scene, surfaces, |surface| surface.normal.map(|part| lift * part));
     let mut parts = Vec::new();
     for (number, body) in problem.bodies.iter().enumerate() {
-        for (name, faces) in faces_by_name(&body.mesh).into_iter().filter(|(_, faces)| !faces.is_empty()) {
+        for (names, faces) in faces_by_names(&body.mesh) {
             let Skin { nodes, faces } = Skin::of(&body.mesh, &faces);
-            let own = if name.is_empty() { "without a name" } else { name.as_str() };
+            let own = if names.is_empty() { "without a name".to_owned() } else { names.join(" and ") };
             let label = match problem.bodies.len() {
-                1 => own.to_owned(),
+                1 => own,
                 _ => format!("{}, {own}", scene_words::body(&body.name)),
             };
             let places = nodes.iter().map(|&node| positions[number][node as usize]).collect();
             parts.push(Part {
                 name: label,
-                face: Some((number, name)),
+                face: Some((number, names)),
                 numbers: nodes,
                 faces,
                 places,
@@ -119,10 +119,10 @@ fn parts(LookedCase { problem, positions, rows, .. }: &LookedCase, surfaces: &[C
 
 /// The number of what acts on a part; none for an obstacle.
 fn class(scene: &Scene, part: &Part) -> f64 {
-    let Some((body, face)) = &part.face else { return f64::NAN };
-    let touches = contacts_of(scene, *body, face).next().is_some();
-    let held = held_on(&scene.bodies[*body], face).next().is_some();
-    let loaded = loads_on(&scene.bodies[*body], face).next().is_some();
+    let Some((body, names)) = &part.face else { return f64::NAN };
+    let touches = names.iter().any(|face| contacts_of(scene, *body, face).next().is_some());
+    let held = names.iter().any(|face| held_on(&scene.bodies[*body], face).next().is_some());
+    let loaded = names.iter().any(|face| loads_on(&scene.bodies[*body], face).next().is_some());
     match (touches, held, loaded) {
         (true, ..) => 1.0,
         (_, true, true) => 4.0,
@@ -135,10 +135,10 @@ fn class(scene: &Scene, part: &Part) -> f64 {
 /// Gaps at the contact nodes of a part; NaN elsewhere.
 fn gaps(LookedCase { problem, rows, .. }: &LookedCase, part: &Part) -> Vec<f64> {
     let mut found = vec![f64::NAN; part.numbers.len()];
-    let Some((body, face)) = &part.face else { return found };
+    let Some((body, names)) = &part.face else { return found };
     let points = problem.boundary.contact_points().iter().zip(&rows.nodes);
     for (point, row) in points.filter(|(point, row)| point.body == *body && row.is_covered) {
-        let is_own = problem.scene.contacts[point.contact].slave.face == *face;
+        let is_own = names.contains(&problem.scene.contacts[point.contact].slave.face);
         if let (true, Ok(place)) = (is_own, part.numbers.binary_search(&point.node)) {
             found[place] = row.gap;
         }

@@ -22,5 +22,5 @@ pub use contact_surface::ContactSurface;
 pub use folder::{FIGURES, VTK};
 pub use sections::{export_command, found_label};
 pub use setup::sketch;
-pub use skin::{Skin, extent, faces_by_name};
+pub use skin::{Skin, extent, faces_by_names};
 pub use solved_page::solved_page;

@@ -1,7 +1,7 @@
 //! The skin of a body as pictures show it.
 
 use contact::body::mesh::{CellFace, Mesh};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashMap};
 
 /// The nodes of the skin, and its faces by their places: corners counterclockwise seen from outside.
 pub struct Skin {
@@ -30,15 +30,20 @@ impl Skin {
     }
 }
 
-/// The faces of the skin by their names; a face of several names counts for the first one, one without a name for "".
-pub fn faces_by_name(mesh: &Mesh) -> Vec<(String, Vec<CellFace>)> {
-    let mut rest: HashSet<CellFace> = mesh.skin().into_iter().collect();
-    let mut found: Vec<(String, Vec<CellFace>)> = Vec::new();
+/// The faces of the skin by the names that they have: those of one set of names together, those without a name last.
+pub fn faces_by_names(mesh: &Mesh) -> Vec<(Vec<String>, Vec<CellFace>)> {
+    let mut names: HashMap<CellFace, Vec<String>> = HashMap::new();
     for (name, faces) in mesh.faces() {
-        found.push((name.clone(), faces.iter().copied().filter(|face| rest.remove(face)).collect()));
+        for face in faces {
+            names.entry(*face).or_default().push(name.clone());
+        }
     }
-    found.push((String::new(), mesh.skin().into_iter().filter(|face| rest.contains(face)).collect()));
-    found
+    let mut found: BTreeMap<Vec<String>, Vec<CellFace>> = BTreeMap::new();
+    for face in mesh.skin() {
+        found.entry(names.remove(&face).unwrap_or_default()).or_default().push(face);
+    }
+    let nameless = found.remove(&Vec::new());
+    found.into_iter().chain(nameless.map(|faces| (Vec::new(), faces))).collect()
 }
 
 /// Least and largest coordinates of some points along an axis.

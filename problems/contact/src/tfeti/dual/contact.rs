@@ -4,7 +4,8 @@
 //! w = B u − g = d − Fλ + Gᵀa,    d = B K⁺ f − g,    g: c_E, then the gaps less what supports prescribe
 //! residual:  (c w_E,  λ − Π(λ + c w)),     G λ = e in every iterate
 //! ```
-//! Every contact node may have a compliance of its own, which is part of F then: a problem on the way to the one without.
+//! Every contact node may have a compliance of its own, which is part of F then: a problem on the way to the one
+//! without.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::{Friction, Linearization};
