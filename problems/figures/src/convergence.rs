@@ -21,6 +21,7 @@ use super::scale::{Axis, extent, number as number_text};
 ///     quantity: "Θ".into(),
 ///     unit: "MPa^{4}".into(),
 ///     steps: vec![step("start", 9e16, 9e16), step("serious", 2e16, 2e16), step("null", 3e16, 2e16)],
+///     course: "best so far".into(),
 ///     reference: Some(("lower bound".into(), 1.3e16)),
 /// };
 /// let figure = course.figure()?;
@@ -39,6 +40,8 @@ pub struct Convergence {
     pub unit: String,
     /// The evaluations, in order.
     pub steps: Vec<Step>,
+    /// What the line through the best values is called.
+    pub course: String,
     /// Name and height of a horizontal line.
     pub reference: Option<(String, f64)>,
 }
@@ -122,7 +125,7 @@ impl Convergence {
     }
 
     fn legend<'a>(&'a self, course: Stroke<'a>, level: Stroke<'a>) -> Vec<(Sign<'a>, String)> {
-        let mut legend = vec![(Sign::Line(course), "best so far".to_owned())];
+        let mut legend = vec![(Sign::Line(course), self.course.clone())];
         legend.extend(self.reference.iter().map(|(name, _)| (Sign::Line(level), name.clone())));
         let origins = self.origins();
         if origins.is_empty() {
@@ -221,6 +224,7 @@ mod tests {
             quantity: "Θ".into(),
             unit: String::new(),
             steps: steps.collect(),
+            course: "best so far".into(),
             reference: None,
         }
     }

@@ -24,6 +24,7 @@ fn plots() -> [Figure; 3] {
         quantity: "Θ".into(),
         unit: "MPa^{4}".into(),
         steps: vec![step("a \"start\"", 9e16), step("<serious>", 2e16), step("null", 1e15), step("refined", 1e14)],
+        course: "best so far".into(),
         reference: Some(("bound & floor".into(), 1e13)),
     };
     let points = vec![(1.0, 1e-3), (10.0, 1e-4), (100.0, 1e-6)];

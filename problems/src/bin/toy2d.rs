@@ -92,6 +92,7 @@ fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failur
         unit: String::new(),
         // A logarithmic axis has no place for a distance that is all rounding.
         steps: history.iter().map(step).filter(|step| step.best > f64::EPSILON).collect(),
+        course: "best so far".into(),
         reference: None,
     };
     folder.draw(&ground.figure().map_err(Failure::computation)?)?;

@@ -200,6 +200,8 @@ pub fn convergence(
         quantity: "Θ".into(),
         unit: objective.unit(),
         steps: steps.collect(),
+        // With limits, the center may move to a larger Θ where it exceeds them by less.
+        course: if report.constraints.is_empty() { "best so far" } else { "center of the steps" }.into(),
         reference: bound
             .filter(|bound| *bound > 0.0 && bound.is_finite())
             .map(|bound| ("least for this force".into(), bound)),

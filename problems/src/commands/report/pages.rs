@@ -5,7 +5,7 @@ use crate::commands::facts::{Facts, Group};
 use crate::commands::numbers::{number, rounded};
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
-use crate::commands::report::sections::{export_command, pictures};
+use crate::commands::report::sections::{export_command, limits, pictures};
 use crate::commands::scene_words::{friction, mesh};
 use crate::commands::shape_facts::is_proved;
 use crate::commands::shape_facts::{self, is_better};
@@ -19,20 +19,27 @@ use std::path::Path;
 /// The report of an optimization.
 pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Path) -> Page {
     let (objective, shapes) = (&ended.last.objective, ended.shapes);
-    let what =
-        if is_better(shapes[0].value, shapes[1].value) { "optimized shape" } else { "no better shape was found" };
-    let mut sections = vec![parts.numbers, parts.space, pictures(parts.pictures)];
+    let proved = if is_proved(&ended.last.report) { "proved" } else { "unproved" };
+    let what = match (shapes[1].keeps_limits(), is_better(shapes[0].value, shapes[1].value)) {
+        (false, _) => "a shape outside the limits".to_owned(),
+        (true, true) => format!("optimized shape, {proved}"),
+        // A start outside the limits may be better, but does not count.
+        (true, false) if !shapes[0].keeps_limits() => format!("a shape within the limits, {proved}"),
+        (true, false) => format!("no better shape was found, {proved}"),
+    };
+    let limits = limits(&shapes.each_ref(), Some(&ended.last.report));
+    let mut sections = vec![limits, parts.numbers, parts.space, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     let command =
         Block::Listing { title: "The command that writes STL, STEP and CSV".into(), text: export_command(folder) };
     sections.extend(controls(objective, shapes[1].controls.as_slice()));
     sections.extend([Section::new("Export", vec![command]), seconds(&shapes[1])]);
-    page(objective, what, facts.lead.join(". ") + ".", sections)
+    page(objective, &what, facts.lead.join(". ") + ".", sections)
 }
 
 /// The report of an evaluation.
 pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape, facts: &Facts) -> Page {
-    let mut sections = vec![parts.numbers, parts.space, pictures(parts.pictures)];
+    let mut sections = vec![limits(&[shape], None), parts.numbers, parts.space, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     sections.extend(controls(objective, shape.controls.as_slice()));
     sections.push(seconds(shape));
