@@ -49,9 +49,9 @@ fn the_default_finds_the_states_of_loosely_held_bodies() {
 #[test]
 fn every_solver_is_as_accurate_at_a_corner() {
     let file = scene_file("corner");
-    let results = ["direct", "auto"].map(|solver| json(CONTACT, &[&file, "evaluate", "--solver", solver, "--json"]));
-    let [direct, default] = results.each_ref().map(|result| result["objective"].as_f64().unwrap());
-    assert!((default / direct - 1.0).abs() < 1e-9 && results[1]["solver"] == "newton", "{direct:e} {default:e}");
+    let results = ["direct", "newton"].map(|solver| json(CONTACT, &[&file, "evaluate", "--solver", solver, "--json"]));
+    let [direct, torn] = results.each_ref().map(|result| result["objective"].as_f64().unwrap());
+    assert!((torn / direct - 1.0).abs() < 1e-9, "{direct:e} {torn:e}");
     for result in &results {
         let imbalance = result["residuals"]["equilibrium"].as_f64().unwrap();
         assert!(imbalance < 1e-13, "{imbalance:e} by {}", result["solver"]);
@@ -105,20 +105,17 @@ fn total_feti_alone_finds_the_state_of_two_loosely_held_bodies_or_refuses() {
     assert!(refusals.iter().any(|words| message.contains(words)), "{message}");
 }
 
-/// The adjoint of a loosely held state took 1172 and 634 products, where a state by direct condensation costs as much
-/// as 213 and 156: what total FETI does not find for that price, direct condensation does.
+/// The adjoint of a loosely held state takes total FETI hundreds of products: the default condenses these bodies.
 #[test]
-fn the_adjoint_costs_no_more_than_a_condensed_state() {
-    for (name, budget, least) in [("slow_adjoint", 213, 212), ("slow_adjoint_without_friction", 156, 1)] {
+fn adjoints_of_loosely_held_states_agree() {
+    for name in ["slow_adjoint", "slow_adjoint_without_friction"] {
         let evaluated = |solver| json(CONTACT, &[&scene_file(name), "evaluate", "--solver", solver, "--json"]);
-        let (default, direct) = (evaluated("auto"), evaluated("direct"));
-        assert_eq!(default["solver"], "newton", "{name}");
-        let products = default["work"]["adjoint_applications"].as_u64().unwrap();
-        assert!((least..=budget).contains(&products), "{name}: {products}");
+        let (torn, default) = (evaluated("newton"), evaluated("auto"));
+        assert_eq!((&torn["solver"], &default["solver"]), (&"newton".into(), &"direct".into()), "{name}");
         let subgradient = |result: &serde_json::Value| -> Vec<f64> {
             result["subgradient"].as_array().unwrap().iter().map(|entry| entry.as_f64().unwrap()).collect()
         };
-        let (found, expected) = (subgradient(&default), subgradient(&direct));
+        let (found, expected) = (subgradient(&torn), subgradient(&default));
         let size = expected.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
         let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error <= 1e-7 * size, "{name}: {error:e} of {size:e}");

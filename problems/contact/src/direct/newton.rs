@@ -112,9 +112,13 @@ fn search(contact: &CompliantContact, from: &[f64], step: &[f64], size: f64, del
     at(1.0)
 }
 
-/// M⁻¹ r without contact compliance, with the smallest spring.
+/// M⁻¹ r without contact compliance, with the smallest spring: relative to the mean compliance, since a spring that is
+/// stiff beside bodies that bend would take a share of r.
 pub(super) fn exact_step(contact: &CompliantContact, linearizations: &[Linearization], residual: &[f64]) -> Vec<f64> {
-    let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: TIGHTEST, max_steps: 1 };
+    let points = &contact.problem.boundary.points;
+    let normal = points.iter().map(|point| contact.compliance[(point.start, point.start)]).sum::<f64>();
+    let spring = SPRINGS[0] * (points.len() as f64 / normal).min(1.0);
+    let problem = Problem { delta: 0.0, spring, tolerance: TIGHTEST, max_steps: 1 };
     step(contact, linearizations, residual, problem)
 }
 
