@@ -25,6 +25,7 @@ mod export_mesh;
 mod facts;
 mod flat_foot;
 mod fuzz;
+mod groups_of_meshes;
 mod just_touching;
 mod limits;
 mod lists;

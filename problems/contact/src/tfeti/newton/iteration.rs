@@ -38,11 +38,11 @@ pub fn solve(
         iterate = newton_steps(contact, iterate, residual, deserved, settings, &mut history)?;
         residual = replace_image(contact, &mut iterate);
     }
-    if residual.is_nan() || residual > settings.acceptable {
-        if let Some(found) = by_continuation(contact, settings, &mut history)? {
-            iterate = found;
-            residual = replace_image(contact, &mut iterate);
-        }
+    if (residual.is_nan() || residual > settings.acceptable)
+        && let Some(found) = by_continuation(contact, settings, &mut history)?
+    {
+        iterate = found;
+        residual = replace_image(contact, &mut iterate);
     }
     if residual.is_nan() || residual > settings.acceptable {
         return Err(not_converged(contact, residual, settings, history));
