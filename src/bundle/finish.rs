@@ -48,19 +48,27 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Whether Θ is constant around a stationary center: its subgradient vanishes, and value and subgradient are the
-    /// same a first step away, both ways along a direction without pattern. At a smooth minimum the values differ.
+    /// Whether Θ is constant around a stationary center: value and vanishing subgradient are those of the points a
+    /// first step away, both ways along a direction without pattern. At a smooth minimum the values differ. They are
+    /// evaluated only where the run has seen no slope at all, or the same at another point: no minimum at a kink costs
+    /// more for it.
     fn is_plateau(&mut self) -> bool {
         let vanishes = |subgradient: &Vector| subgradient.iter().all(|slope| *slope == 0.0);
+        let (center, value) = (self.state.center.clone(), self.state.center_value);
+        let is_equal = |other: f64| (other - value).abs() <= 4.0 * f64::EPSILON * value.abs();
         let confirmed = self.termination.as_ref().is_some_and(Termination::is_confirmed);
-        let center = self.state.bundle.cut(self.state.center_id);
-        if !confirmed || !center.is_some_and(|cut| vanishes(&cut.subgradient)) {
+        let own = self.state.bundle.cut(self.state.center_id);
+        if !confirmed || !own.is_some_and(|cut| vanishes(&cut.subgradient)) {
             return false;
         }
-        let direction = Vector::from_fn(self.state.center.len(), |i, _| (1.7 * i as f64 + 0.5).cos());
+        let mut others = self.state.bundle.cuts().iter().filter(|cut| cut.point != center && !cut.certified);
+        let twice = others.any(|cut| vanishes(&cut.subgradient) && is_equal(cut.value));
+        if !twice && !vanishes(&self.state.seen.steepest) {
+            return false;
+        }
+        let direction = Vector::from_fn(center.len(), |i, _| (1.7 * i as f64 + 0.5).cos());
         let direction = &direction * (self.state.first_step / self.state.norm.length(&direction));
-        let (value, unit) = (self.state.center_value, f64::EPSILON * self.state.center_value.abs());
-        let (center, set) = (self.state.center.clone(), self.set.clone());
+        let set = self.set.clone();
         let points = [direction.clone(), -direction].into_iter().map(|step| set.clamp_to_box(&(&center + step)));
         let points: Vec<Vector> = points.filter(|point| *point != center && set.violation(point) <= 0.0).collect();
         !points.is_empty()
@@ -68,7 +76,7 @@ impl Run<'_, '_> {
                 match self.evaluate(&point, Accuracy::TIGHTEST, None, f64::NEG_INFINITY) {
                     OracleResult::Answer(answer) => {
                         let found = answer.evaluation();
-                        vanishes(&found.subgradient) && (found.value - value).abs() <= 4.0 * unit
+                        vanishes(&found.subgradient) && is_equal(found.value)
                     }
                     _ => false,
                 }

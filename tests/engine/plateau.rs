@@ -17,7 +17,8 @@ fn on_plateau(start: f64, theta: fn(f64) -> (f64, f64)) -> bool {
 #[test]
 fn a_constant_around_the_end_is_told() {
     assert!(on_plateau(3.0, |_| (5.0, 0.0)));
-    assert!(on_plateau(0.0, |x| ((x - 10.0).max(0.0), f64::from(u8::from(x > 10.0)))));
+    let hinge = |x: f64| ((x - 10.0).max(0.0), f64::from(u8::from(x > 10.0)));
+    assert!(on_plateau(0.0, hinge));
 }
 
 #[test]
