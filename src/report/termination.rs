@@ -115,7 +115,9 @@ impl Termination {
                 "a more accurate oracle is needed to get further; where convexity is declared, check that the objective is convex"
             }
             Self::StepTooShort { .. } => "check the subgradients with `verify` at the best point",
-            Self::EvaluationLimit | Self::IterationLimit | Self::TimeLimit => "raise the limit and continue",
+            Self::EvaluationLimit => "allow more evaluations and continue",
+            Self::IterationLimit => "allow more iterations and continue",
+            Self::TimeLimit => "allow more time and continue",
             Self::StoppedByObserver | Self::Unfinished | Self::StopRule { .. } => {
                 "continue when wanted: nothing is lost"
             }

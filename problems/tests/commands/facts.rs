@@ -97,7 +97,7 @@ fn the_first_two_lines_say_what_was_found_and_whether_it_is_proved() {
     // The reduction of the objective is that of its root.
     let ratio = json["objective_start"].as_f64().unwrap() / json["objective"].as_f64().unwrap();
     assert!((told[5] / ratio.powf(0.25) - 1.0).abs() < 0.01 && after.contains("(Σσ⁴)^(1/4)"), "{}", lines[0]);
-    assert_eq!(lines[1], "Not proved: evaluation limit reached; raise the limit and continue");
+    assert_eq!(lines[1], "Not proved: evaluation limit reached; allow more evaluations and continue");
     let inner = ["subproblems", "fallback", "predicted decrease", "noise", "weight", "aggregate", "left out", "trial"];
     let long = printed(SIGNORINI, &[&run[..], &["--verbose"]].concat());
     for word in inner {

@@ -2,6 +2,7 @@
 
 use crate::body::MOTIONS;
 use crate::body::loads::nodal_forces;
+use crate::body::mesh::smallest_extent;
 use crate::equilibrium::modes::OwnMotion;
 use crate::equilibrium::{ContactProblem, ContactRows};
 use crate::scene::Held;
@@ -15,7 +16,7 @@ pub struct Preview {
     pub contact_nodes: usize,
     /// Least and largest gap, mm; negative where the bodies overlap.
     pub gaps: [f64; 2],
-    /// Number of contact nodes whose gaps are negative.
+    /// Number of contact nodes whose gaps are negative by more than rounding: 1e-9 of the smallest extent of a body.
     pub overlapping: usize,
     /// The bodies, lower first.
     pub bodies: Vec<BodyPreview>,
@@ -38,6 +39,8 @@ pub struct BodyPreview {
 
 /// Part of a translation beyond the free motions that is rounding.
 const FREE: f64 = 1e-9;
+/// Part of the smallest extent of the bodies up to which a negative gap is rounding.
+const CLOSED: f64 = 1e-9;
 
 impl ContactProblem {
     /// What is known of the scene before a solve, at its start.
@@ -65,10 +68,11 @@ impl ContactProblem {
             BodyPreview { name: body.name.clone(), held_faces, free_motions: motions.len(), free_translations, load }
         };
         let gaps = || rows.contact_nodes().iter().filter(|node| node.is_covered).map(|node| node.gap);
+        let size = positions.iter().map(|nodes| smallest_extent(nodes)).fold(f64::INFINITY, f64::min);
         Preview {
             contact_nodes: gaps().count(),
             gaps: [gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max)],
-            overlapping: gaps().filter(|gap| *gap < 0.0).count(),
+            overlapping: gaps().filter(|gap| *gap < -CLOSED * size).count(),
             bodies: self.scene.bodies.iter().enumerate().map(of_body).collect(),
         }
     }

@@ -25,11 +25,11 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
         row("contact_area", "contact area (nodes that are closed)", "mm²", &|shape, _| {
             shape.state().rows.closed_area(&shape.state().forces.status)
         }),
-        row("peak_von_mises_at_centres", "peak von Mises stress at the centre of a cell", "MPa", &|_, fields| {
+        row("peak_von_mises_at_centres", "von Mises stress at cell centres, peak", "MPa", &|_, fields| {
             largest(fields.bodies.iter().flat_map(|body| &body.von_mises))
         })
         .meaning("stresses at the centres of cells converge with the square of the mesh size"),
-        row("peak_von_mises_at_nodes", "peak of the mean von Mises stress around a node", "MPa", &|_, fields| {
+        row("peak_von_mises_at_nodes", "von Mises stress averaged at nodes, peak", "MPa", &|_, fields| {
             largest(fields.bodies.iter().flat_map(|body| &body.nodal_von_mises))
         })
         .meaning(

@@ -59,7 +59,7 @@ pub fn sketch(problem: &ContactProblem, controls: &[f64]) -> Result<Figure, Fail
             faces: surface.faces(),
         });
         notes.push(match surface.label.as_str() {
-            "" => "surface above: rigid obstacle".to_owned(),
+            "" => format!("surface {}: rigid obstacle", side_of(surface.normal)),
             label => format!("{label}: rigid obstacle"),
         });
     }
@@ -74,10 +74,7 @@ pub fn sketch(problem: &ContactProblem, controls: &[f64]) -> Result<Figure, Fail
     }
     notes.extend((0..scene.contacts.len()).flat_map(|contact| frictions(scene, contact)));
     notes.extend(counters.iter().map(Counter::words));
-    notes.push(match scene_words::is_short(scene) {
-        true => format!("what lies above the contact surface is lifted by {} mm", number(lift)),
-        false => format!("bodies are drawn apart by {} mm along the normals of their contact", number(lift)),
-    });
+    notes.push(format!("bodies are drawn apart by {} mm along the normals of their contact", number(lift)));
     let [a, b, _] = sides.map(number);
     let sketch = Sketch {
         name: "sketch".into(),
@@ -343,4 +340,13 @@ fn far_apart(spots: Vec<Spot>) -> Vec<Spot> {
         chosen.push(*next);
     }
     chosen
+}
+
+/// Where a surface with a normal from the body into it lies, in words.
+fn side_of(normal: [f64; 3]) -> &'static str {
+    match normal[2] {
+        up if up >= 0.5 => "above",
+        up if up <= -0.5 => "below",
+        _ => "beside",
+    }
 }
