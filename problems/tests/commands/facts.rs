@@ -138,7 +138,8 @@ fn tables_of_comma_separated_values_have_units_and_no_noise() {
     let out = scratch.path().join("run");
     kit::json(SIGNORINI, &["--mesh", "4", "--max-evaluations", "3", "--json", "--out", text(&out)]);
     let nodes = read(&out, "pressure_optimal.csv");
-    let head = "x1_mm,x2_mm,x3_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,traction_3_MPa,remaining_gap_mm,status";
+    let head = "x1_mm,x2_mm,x3_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,traction_3_MPa,remaining_gap_mm,area_mm2,\
+                normal_1,normal_2,normal_3,status";
     assert_eq!(nodes.lines().next(), Some(head));
     let history = read(&out, "history.csv");
     let head = "evaluation,kind,value_MPa^4,center_value_MPa^4,predicted_decrease_MPa^4,aggregate_norm,aggregate_error_MPa^4,seconds";

@@ -5,21 +5,23 @@ use crate::commands::solved_shape::ContactObjective;
 use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
-/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to accuracy), status; where there are
-/// several contacts, the number of its contact.
+/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to accuracy), area and normal, from
+/// the body into what it touches, status; where there are several contacts, the number of its contact. The force of
+/// the body on what it touches is the sum of area × (pressure × normal + traction).
 pub fn contact_nodes(objective: &ContactObjective, controls: &[f64], state: &ContactState) -> String {
     let problem = objective.solver().problem();
-    let head = "x1_mm,x2_mm,x3_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,traction_3_MPa,remaining_gap_mm,status\n";
+    let head = "x1_mm,x2_mm,x3_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,traction_3_MPa,remaining_gap_mm,area_mm2,\
+                normal_1,normal_2,normal_3,status\n";
     let several = problem.scene.contacts.len() > 1;
     let mut table = if several { format!("contact,{head}") } else { head.to_owned() };
     let (pressures, positions) = (objective.pressures(state), problem.map.positions(controls));
     for (index, (point, pressure)) in problem.boundary.contact_points().iter().zip(pressures).enumerate() {
         let [x1, x2, x3] = positions[point.body][point.node as usize];
-        let area = state.rows.nodes[index].area;
+        let (area, [n1, n2, n3]) = (state.rows.nodes[index].area, state.rows.nodes[index].normal.map(|n| n + 0.0));
         let [t1, t2, t3] = state.forces.tangential.get(index).map_or([0.0; 3], |force| force.map(|f| f / area));
         // The jump less the gap is negative where bodies are apart.
         let gap = -state.forces.opening[index];
-        let cells = [x1, x2, x3, pressure, t1, t2, t3, gap].map(exact).join(",");
+        let cells = [x1, x2, x3, pressure, t1, t2, t3, gap, area, n1, n2, n3].map(exact).join(",");
         let contact = if several { format!("{},", point.contact + 1) } else { String::new() };
         table += &format!("{contact}{cells},{:?}\n", state.forces.status[index]);
     }
