@@ -186,8 +186,8 @@ impl ContactScene {
         convert::shaped(py, self.case.start_controls(), &self.control_shape())
     }
 
-    /// Θ, its subgradient, and the state at controls in row-major order; with its fields and warnings if asked for, else
-    /// with the limits as constraints.
+    /// Θ, its subgradient, and the state at controls in row-major order; with its fields and warnings if asked for,
+    /// else with the limits as constraints.
     fn evaluate<'py>(
         &self,
         py: Python<'py>,

@@ -271,6 +271,8 @@ class View {
       shapes.map((shape) => shape.name),
       update,
     );
+    // The last shape is the one found.
+    this.shape.select.selectedIndex = shapes.length - 1;
     this.case = choice("Load case", cases, update);
     this.field = choice(
       "Colours",

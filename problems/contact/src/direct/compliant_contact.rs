@@ -5,9 +5,9 @@
 //! ```
 //! c is the mean normal stiffness of the contact nodes: the stiffness of what a contact force moves when all other
 //! nodes rest. The entries of C are no unit: where a body is nearly free to move, they are larger than any approach of
-//! contact nodes that matters, and residuals relative to them would say nothing. C is the sum of the bodies' compliances
-//! over the packed rows, R a the jumps of their free rigid motions. Motions that no contact node feels are left out: no
-//! force depends on them.
+//! contact nodes that matters, and residuals relative to them would say nothing. C is the sum of the bodies'
+//! compliances over the packed rows, R a the jumps of their free rigid motions. Motions that no contact node feels are
+//! left out: no force depends on them.
 
 use crate::direct::compliant_body::ContactBody;
 use crate::equilibrium::law::Linearization;

@@ -61,7 +61,8 @@ impl Configuration {
     }
 
     /// The residuals of packed contact forces, N, and jumps, mm, whatever solver found them; without the residual of
-    /// its own iteration. `bound`: the mean stiffness of a contact node, N/mm, where bodies bend and resist less than E*√A.
+    /// its own iteration. `bound`: the mean stiffness of a contact node, N/mm, where bodies bend and resist less than
+    /// E*√A.
     pub(crate) fn residuals(&self, problem: &ContactProblem, forces: &[f64], jumps: &[f64], bound: f64) -> Residuals {
         let nodes = problem.contact_moduli.iter().zip(&self.rows.nodes);
         let stiffness = nodes.map(|(modulus, node)| bound.min(modulus * node.area.max(0.0).sqrt()));

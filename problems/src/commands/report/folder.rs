@@ -8,7 +8,7 @@ use crate::commands::register::{JOURNAL, REGISTER};
 use crate::commands::report::bodies::Relief;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::gallery::ShownShape;
-use crate::commands::report::key_numbers::key_numbers;
+use crate::commands::report::key_numbers::{self, key_numbers};
 use crate::commands::report::space::space;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
@@ -95,7 +95,7 @@ impl<'a> ReportFolder<'a> {
         if self.wanted().report {
             let numbers = key_numbers(self.objective, &shapes);
             self.write("key_numbers.json", &json(&numbers.table())?, "the table of the result")?;
-            self.parts.numbers = numbers.section();
+            self.parts.numbers = key_numbers::section(self.objective, &shapes);
             let labels: Vec<&str> = solved.iter().map(|(_, label, _)| *label).collect();
             if let Some(view) = space(self.objective, &labels, &shapes)? {
                 let block = Block::Space { view, caption: captions::SPACE.into() };

@@ -8,11 +8,15 @@ use crate::commands::shape_facts;
 use crate::commands::solved_shape::ContactObjective;
 use contact::deformation::Deformation;
 use contact::fields::Fields;
+use figures::page::{Block, Section};
 
 /// The key numbers of shapes that have fields; friction work only where there is friction.
-pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Group {
+pub fn key_numbers<'s, 'o: 's>(
+    objective: &ContactObjective,
+    shapes: impl IntoIterator<Item = &'s ShownShape<'o>>,
+) -> Group {
     let seen: Vec<(&ShownShape<'_>, &Fields)> =
-        shapes.iter().filter_map(|shape| Some((shape, shape.fields.as_ref()?))).collect();
+        shapes.into_iter().filter_map(|shape| Some((shape, shape.fields.as_ref()?))).collect();
     let row = |key: &'static str, quantity: &str, unit: &str, value: &dyn Fn(&ShownShape<'_>, &Fields) -> f64| {
         Fact::row(key, quantity, seen.iter().map(|(shape, fields)| value(shape, fields).into()).collect(), unit)
     };
@@ -64,6 +68,20 @@ pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> G
     }
     let columns = seen.iter().map(|(shape, _)| shape.label.clone()).collect();
     Group { title: "Result", columns, facts, words: String::new() }
+}
+
+/// The key numbers as a section of the page: a table per load case, so that each fits.
+pub fn section(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Section {
+    let count = objective.cases().count();
+    if count == 1 {
+        return key_numbers(objective, shapes).section();
+    }
+    let of_case = |case: usize| {
+        let own = key_numbers(objective, shapes.iter().filter(move |shape| shape.case == case)).section();
+        let name = Block::Text(format!("Load case \"{}\":", objective.cases().name(case)));
+        std::iter::once(name).chain(own.blocks)
+    };
+    Section::new("Result", (0..count).flat_map(of_case).collect())
 }
 
 /// A row over shapes by what a shape and its fields say.

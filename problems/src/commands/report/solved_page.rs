@@ -3,7 +3,7 @@
 use crate::commands::failure::Failure;
 use crate::commands::report::captions;
 use crate::commands::report::gallery::ShownShape;
-use crate::commands::report::key_numbers::key_numbers;
+use crate::commands::report::key_numbers;
 use crate::commands::report::space::space;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use figures::page::{Block, Page, Section};
@@ -29,7 +29,7 @@ pub fn solved_page(objective: &ContactObjective, shapes: &[(&str, &Vector)]) -> 
     let blocks = view.map(|view| Block::Space { view, caption: captions::SPACE.into() });
     let sections = vec![
         Section::new("In three dimensions", blocks.into_iter().collect()),
-        key_numbers(objective, &shown).section(),
+        key_numbers::section(objective, &shown),
     ];
     let title = format!("{}: {}", objective.solver().problem().scene.name, labels.join(" and "));
     Ok(Page { title, sections, ..Page::default() }.html())

@@ -7,6 +7,7 @@ use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::skin::{Skin, extent};
 use crate::commands::scene_words;
 use crate::commands::solved_shape::ContactObjective;
+use crate::commands::vectors::{dot, minus};
 use contact::equilibrium::{ContactProblem, ContactStatus};
 use contact::fields::{BodyFields, Fields};
 use figures::{Space, SpaceBody, SpaceField, SpaceShape, SpaceState, SpaceView, View, nice_below};
@@ -28,18 +29,28 @@ pub fn space(
         _ => return Ok(None),
     };
     let skins: Vec<Skin> = first.iter().map(|body| Skin::new(&body.mesh)).collect();
-    let fields = space_fields(problem);
+    let mut fields = space_fields(problem);
+    let several = labels.len() > 1;
+    if several {
+        fields.push(SpaceField { name: "change of shape".into(), unit: "mm".into(), classes: Vec::new() });
+    }
     let surfaces = ContactSurface::all(problem);
     let state = |(index, (shape, fields)): (usize, &(&ShownShape<'_>, &Fields))| {
         let pairs = || fields.bodies.iter().zip(&skins);
         let displacement = |(body, skin): (&BodyFields, &Skin)| at(skin, &body.displacement);
         let stress = |(body, skin): (&BodyFields, &Skin)| at(skin, &body.nodal_von_mises);
         let [pressure, status] = contact_values(objective, shape, fields, &skins);
+        // How far every node lies from its place at the first shape.
+        let change = |((body, skin), first): ((&BodyFields, &Skin), &BodyFields)| {
+            let moved = |node: &u32| length(minus(body.positions[*node as usize], first.positions[*node as usize]));
+            skin.nodes.iter().map(moved).collect::<Vec<f64>>()
+        };
+        let changes = several.then(|| pairs().zip(first).map(change).collect());
         SpaceState {
             shape: index / cases,
             case: index % cases,
             displacements: pairs().map(displacement).collect(),
-            values: vec![pressure, pairs().map(stress).collect(), status],
+            values: [pressure, pairs().map(stress).collect(), status].into_iter().chain(changes).collect(),
         }
     };
     let places = |fields: &Fields| -> Vec<Vec<[f64; 3]>> {
@@ -132,4 +143,8 @@ fn contact_values(
         skins.iter().enumerate().map(of_body).collect()
     };
     [values(0), values(1)]
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    dot(vector, vector).sqrt()
 }
