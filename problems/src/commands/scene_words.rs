@@ -161,9 +161,13 @@ pub fn load(load: &Load, area: impl FnOnce() -> f64) -> String {
             format!("{} MPa, in all {} N", vector(*traction), number(size * area()))
         }
         LoadKind::Pressure(pressure) => format!("pressure {} MPa", number(*pressure)),
-        LoadKind::Resultant { force, moment: [0.0, 0.0, 0.0], .. } => format!("{} N", vector(*force)),
-        LoadKind::Resultant { force, moment, .. } => {
-            format!("{} N with moment {} N mm", vector(*force), vector(*moment))
+        LoadKind::Resultant { force, moment, point } => {
+            let moment = match moment {
+                [0.0, 0.0, 0.0] => String::new(),
+                moment => format!(" with moment {} N mm", vector(*moment)),
+            };
+            let point = point.map_or_else(String::new, |point| format!(" at {} mm", vector(point)));
+            format!("{} N{moment}{point}", vector(*force))
         }
         LoadKind::Formula(texts) => format!("traction ({}) MPa", texts.join(", ")),
         LoadKind::BodyForce(force) => format!("{} N/mm³", vector(*force)),

@@ -69,6 +69,16 @@ fn a_load_that_pulls_a_body_off_is_told() {
     assert!(!notes("-800.0").contains("pull it off"), "{}", notes("-800.0"));
 }
 
+#[test]
+fn look_tells_the_point_and_the_moment_of_a_load() {
+    let folder = scratch();
+    let scene = lug(folder.path());
+    let setting =
+        r#"body.loads=[{ face = "top", force = [0.0, 0.0, -9.0], moment = [7.0, 0.0, 0.0], point = [1.0, 2.0, 3.0] }]"#;
+    let looked = String::from_utf8_lossy(&run(CONTACT, &[&scene, "look", "--set", setting]).stdout).into_owned();
+    assert!(looked.contains("with moment (7.00000, 0, 0) N mm at (1.00000, 2.00000, 3.00000) mm"), "{looked}");
+}
+
 /// Cells that evaluation refuses are no shape for other programs.
 #[test]
 fn export_refuses_inverted_cells() {

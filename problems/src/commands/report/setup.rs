@@ -303,6 +303,8 @@ impl Place<'_> {
             match &load.kind {
                 LoadKind::Traction(traction) => *traction,
                 LoadKind::Pressure(pressure) => normal.map(|part| -pressure * part),
+                // A moment alone is drawn along its axis.
+                LoadKind::Resultant { force: [0.0, 0.0, 0.0], moment, .. } => *moment,
                 LoadKind::Resultant { force, .. } => *force,
                 LoadKind::Formula(texts) => texts
                     .each_ref()
