@@ -69,9 +69,9 @@ impl Order {
         let max_products = products.max(MIN_PRODUCTS);
         let with_jacobians = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
         let [direct, torn] = estimate.seconds(problem);
-        // Several processes and clusters are for total FETI.
-        let is_alone = options.clusters.is_none() && options.communication.size() == 1;
-        let cheaper = match (with_jacobians, is_alone && torn > CLEARLY_SLOWER * direct) {
+        // Clusters are asked for by those who want total FETI. Processes have no part in the choice: it is that of one.
+        let is_slower = options.clusters.is_none() && torn > CLEARLY_SLOWER * direct;
+        let cheaper = match (with_jacobians, is_slower) {
             (true, _) => Some("Jacobians of all pressures cost least there".to_owned()),
             (false, true) => Some(format!("it takes an estimated share of {:.2} of the time", direct / torn)),
             (false, false) => None,

@@ -367,7 +367,10 @@ pub fn closing_facts(warnings: &[Warning], left_out: &[&str], usage: Option<&Usa
 
 /// The warnings of the optimizer and those about the final state.
 pub fn all_warnings(report: &Report, checks: &[Warning]) -> Vec<Warning> {
-    let own = report.warnings.iter().map(|text| Warning { code: "optimizer", text: text.clone() });
+    let own = report.warnings.iter().map(|text| match text.strip_prefix("plateau: ") {
+        Some(text) => Warning { code: "plateau", text: text.to_owned() },
+        None => Warning { code: "optimizer", text: text.clone() },
+    });
     own.chain(checks.iter().cloned()).collect()
 }
 
