@@ -355,5 +355,5 @@ def test_the_violation_of_limits_is_told():
 def test_fields_replace_tables_and_none_removes():
     scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, counter_surface={"form": "plane", "height": 103.0})
     assert "\nfirst = " not in scene.to_toml()
-    same = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, optimizer=None)
-    assert same.name == scene.name
+    with pytest.raises(ValueError, match="counter_surface"):
+        contact.Scene.from_toml(SCENES / "signorini.toml", counter_surface=None)
