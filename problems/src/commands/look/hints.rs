@@ -36,7 +36,12 @@ pub fn hints(LookedCase { problem, positions, preview, .. }: &LookedCase) -> Vec
         }
     }
     for (number, body) in preview.bodies.iter().enumerate() {
-        if pulls_off(problem, positions, number, body.load) {
+        if pulls_off(
+            problem,
+            positions,
+            number,
+            std::array::from_fn(|axis| if body.free_translations[axis] { body.load[axis] } else { 0.0 }),
+        ) {
             let name = scene_words::body(&body.name);
             found.push(format!("the loads of the {name} pull it off what it touches: turn them if they are to press"));
         }
@@ -56,12 +61,16 @@ pub fn hints(LookedCase { problem, positions, preview, .. }: &LookedCase) -> Vec
     found
 }
 
-/// Whether a force on a body points away from what it touches, on all faces that touch.
+/// Whether a force on a body, without what supports carry, points away from what it touches, on all faces that touch.
 fn pulls_off(problem: &ContactProblem, positions: &Positions, body: usize, force: [f64; 3]) -> bool {
     let sides = problem.scene.contacts.iter().filter(|contact| !contact.is_tied()).flat_map(ContactScene::faces);
     let mut sides = sides.filter(|side| side.body == body).peekable();
-    let away = -INTO * dot(force, force).sqrt();
-    away < 0.0 && sides.peek().is_some() && sides.all(|side| dot(force, mean_normal(problem, positions, side)) < away)
+    let size = dot(force, force).sqrt();
+    let away = -INTO * size;
+    // The resultant of a moment is rounding.
+    size > ROUNDING * problem.load()
+        && sides.peek().is_some()
+        && sides.all(|side| dot(force, mean_normal(problem, positions, side)) < away)
 }
 
 /// Whether an axis runs along all faces of a body that touch, rather than into what they touch.

@@ -22,7 +22,8 @@ pub fn cases() -> Vec<Case> {
         });
         let mut case = ContactCase::new(scene).check(uniform(1.0, 0.05));
         if !(0.1..1e4).contains(&height) {
-            case = case.limit([&["BeyondPrecision"], &[]], FACTORS);
+            // Total FETI may reach no residual of 1e-8 in the unit of the contact forces, and says so.
+            case = case.limit([&["BeyondPrecision", "Inaccurate"], &[]], FACTORS);
         }
         let case = case.case(GROUP, format!("height to width {:e}", height / 10.0));
         cases.push(if (1.0..=1e3).contains(&height) { case } else { case.slow() });

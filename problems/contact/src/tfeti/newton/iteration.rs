@@ -9,12 +9,13 @@ use crate::tfeti::newton::linear_solve::LinearAccuracy;
 use crate::tfeti::newton::recycling::Recycled;
 use crate::tfeti::newton::rounding::not_converged;
 use crate::tfeti::newton::settings::NewtonSettings;
-use crate::tfeti::newton::start::first_iterate;
+use crate::tfeti::newton::start::{bonded, first_iterate};
 use crate::tfeti::newton::steps::newton_steps;
 
 /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact
-/// steps do not converge, a second run takes the way over problems whose contact nodes yield. The residual that
-/// decides, and that certifies the state, comes from a fresh product with F.
+/// steps do not converge, a second run takes the way over problems whose contact nodes yield, and a third one solves
+/// every linear system as accurately as rounding allows. The residual that decides, and that certifies the state, comes
+/// from a fresh product with F.
 ///
 /// # Errors
 /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
@@ -42,6 +43,16 @@ pub fn solve(
         && let Some(found) = by_continuation(contact, settings, &mut history)?
     {
         iterate = found;
+        residual = replace_image(contact, &mut iterate);
+    }
+    let left = settings.products_left(contact.operator.applications());
+    if (residual.is_nan() || residual > settings.acceptable) && left > 0 {
+        // Bricks of extreme shape need linear systems that are solved as accurately as rounding allows.
+        let exact = bonded(contact, LinearAccuracy::exact(left), None)?;
+        let start = contact.residual(&exact);
+        history.push(start);
+        let accuracy = |_| LinearAccuracy::exact(settings.products_left(contact.operator.applications()));
+        iterate = newton_steps(contact, exact, start, accuracy, settings, &mut history)?;
         residual = replace_image(contact, &mut iterate);
     }
     if residual.is_nan() || residual > settings.acceptable {
