@@ -1,6 +1,6 @@
 //! Contact of a scene file: what touches, along which normals, over which areas, with which friction.
 
-use contact::scene::{AreaKind, BodyFace, ContactKind, ContactScene, Master, NormalKind};
+use contact::scene::{AreaKind, BodyFace, ContactScene, Master, NormalKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -48,14 +48,11 @@ impl ContactSection {
         let normal = self.normal.unwrap_or(usual);
         let area = if normal == NormalKind::X3 { AreaKind::Projected } else { AreaKind::Surface };
         ContactScene {
-            slave: BodyFace::new(0, self.face.as_deref().unwrap_or(face)),
-            master,
-            kind: ContactKind::Unilateral,
             normal,
             area: self.area.unwrap_or(area),
-            friction,
             interference: self.interference.unwrap_or_default(),
             friction_by_region: self.regions.iter().map(|part| (part.region.clone(), part.friction)).collect(),
+            ..ContactScene::new(BodyFace::new(0, self.face.as_deref().unwrap_or(face)), master, friction)
         }
     }
 }

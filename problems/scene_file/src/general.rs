@@ -203,6 +203,8 @@ fn pair(
         friction: if section.tied { 0.0 } else { section.friction.unwrap_or(file.friction) },
         friction_by_region: section.regions.iter().map(|part| (part.region.clone(), part.friction)).collect(),
         interference: section.interference.unwrap_or_default(),
+        clearance: section.clearance,
+        geometry: section.geometry,
     })
 }
 

@@ -4,7 +4,7 @@ use crate::{
     AdmissibleSection, CounterSection, FrictionSection, LatticeSection, LoadSection, MaterialSection, SupportSection,
     SurfaceSection, UnitName, VolumeMaterialSection,
 };
-use contact::scene::{AreaKind, NormalKind};
+use contact::scene::{AreaKind, FaceGeometry, NormalKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -122,6 +122,14 @@ pub struct PairSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub interference: Option<f64>,
+    /// The gap at the start between two bodies, whatever their meshes say: later changes of the shape count. Negative:
+    /// an interference. Default: the faces tell the gaps. Not with interference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
+    pub clearance: Option<f64>,
+    /// What gaps between two bodies are measured between: "curved" surfaces, or the flat "facets" of the meshes for
+    /// comparison.
+    pub geometry: FaceGeometry,
     /// Other friction coefficients on parts of the slave face.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<FrictionSection>,

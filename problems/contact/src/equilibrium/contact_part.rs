@@ -5,8 +5,9 @@ use crate::body::elasticity::facet::tributary_areas;
 use crate::body::mesh::{CellFace, bounding_box};
 use crate::equilibrium::pair_sides::possible_masters;
 use crate::error::SceneError;
-use crate::mortar::{Along, Face, Facet, Mortar, MortarNode};
+use crate::mortar::{Along, Bend, Face, Facet, Mortar, MortarNode};
 use crate::names::find_face;
+use crate::patches::BentFace;
 use crate::scalar::Scalar;
 use crate::scene::{AreaKind, BodyFace, ContactScene, CounterSurface, Master, NormalKind, Scene};
 use crate::shape::ShapeMap;
@@ -56,11 +57,15 @@ pub(crate) struct Pair {
     pub body: usize,
     /// Slave facets, then master facets.
     facets: [Vec<Facet>; 2],
+    /// Middles of the edges of both; none for flat facets.
+    bends: [Vec<Bend>; 2],
     along: Along,
     /// Whether normals along x₃ point downwards.
     is_downward: bool,
     /// The gap of nodes that the master does not lie opposite to, mm: the diagonal of the slave face.
     pub away: f64,
+    /// What makes the gaps of the start the stated clearance, per slave node, mm; none where the faces tell the gaps.
+    pub offsets: Vec<f64>,
     /// The mortar integrals of the start.
     start: Arc<Mortar>,
 }
@@ -74,7 +79,7 @@ impl ContactPart {
     pub(crate) fn new(
         (scene, index): (&Scene, usize),
         bodies: &[Body],
-        map: &ShapeMap,
+        (map, bent): (&ShapeMap, Option<&[BentFace; 2]>),
         start: &[Arc<Vec<[f64; 3]>>],
     ) -> Result<Self, SceneError> {
         let (contact, field) = (&scene.contacts[index], scene.contact_field(index));
@@ -115,7 +120,7 @@ impl ContactPart {
                 };
                 this.areas_change = !this.is_fixed;
                 let faces = faces_of(&format!("{field}.master"), master, bodies)?;
-                this.pair_with((scene, contact, master), &faces, bodies, start);
+                this.pair_with((scene, contact, master), (&faces, bent), bodies, start);
                 let (names, allowed) = (
                     format!("\"{}\" and \"{}\"", contact.slave.face, master.face),
                     "two faces that lie opposite to each other",
@@ -130,13 +135,15 @@ impl ContactPart {
     fn pair_with(
         &mut self,
         (scene, contact, master): (&Scene, &ContactScene, &BodyFace),
-        faces: &[CellFace],
+        (faces, bent): (&[CellFace], Option<&[BentFace; 2]>),
         bodies: &[Body],
         start: &[Arc<Vec<[f64; 3]>>],
     ) {
         let facets = [mortar_facets(&bodies[self.slave], &self.faces), mortar_facets(&bodies[master.body], faces)];
         let along = if contact.normal == NormalKind::X3 { Along::X3 } else { Along::Normals };
-        let mortar = mortar(&facets, [&start[self.slave], &start[master.body]], along);
+        let bends = bent.map_or_else(Default::default, |faces| [0, 1].map(|side| faces[side].bends.clone()));
+        let positions: [&[[f64; 3]]; 2] = [&start[self.slave], &start[master.body]];
+        let mortar = mortar(&facets, &bends, positions, along);
         let is_covered = |node: &&MortarNode| node.covered >= COVERED;
         let covered = || mortar.nodes.iter().filter(is_covered);
         self.uncovered = mortar.nodes.len() - covered().count();
@@ -164,7 +171,11 @@ impl ContactPart {
         let away = (0..3).map(|axis| (most[axis] - least[axis]).powi(2)).sum::<f64>().sqrt();
         let is_downward = along == Along::X3 && faces_down(&facets[0], &start[self.slave]);
         let start = Arc::new(mortar);
-        self.counter = Counter::Pair(Pair { body: master.body, facets, along, is_downward, away, start });
+        let mut pair = Pair { body: master.body, facets, bends, along, is_downward, away, offsets: Vec::new(), start };
+        if let Some(clearance) = contact.clearance {
+            pair.offsets = pair.offsets_for(clearance, positions);
+        }
+        self.counter = Counter::Pair(pair);
     }
 
     /// The contact nodes with the master nodes in their rows.
@@ -238,12 +249,34 @@ impl Pair {
 
     /// The mortar integrals of a shape; those of the start where they are the same for all shapes.
     pub(crate) fn mortar(&self, positions: [&[[f64; 3]]; 2], is_fixed: bool) -> Arc<Mortar> {
-        if is_fixed { Arc::clone(&self.start) } else { Arc::new(mortar(&self.facets, positions, self.along)) }
+        match is_fixed {
+            true => Arc::clone(&self.start),
+            false => Arc::new(mortar(&self.facets, &self.bends, positions, self.along)),
+        }
+    }
+
+    /// What added to the gaps of the start gives a clearance. Nodes that nothing lies opposite to at the start have the
+    /// mean of the others.
+    fn offsets_for(&self, clearance: f64, [slave, master]: [&[[f64; 3]]; 2]) -> Vec<f64> {
+        let offset = |node: &MortarNode| {
+            let mut gap = node.gap;
+            if !self.start.is_bent() {
+                let x = slave[node.node as usize];
+                let other = |axis: usize| node.weights.iter().map(|(m, w)| w * master[*m as usize][axis]).sum::<f64>();
+                let normal = self.outward(node.normal);
+                gap = (0..3).map(|axis| normal[axis] * (other(axis) - x[axis])).sum();
+            }
+            (node.covered >= COVERED).then_some(clearance - gap)
+        };
+        let offsets: Vec<Option<f64>> = self.start.nodes.iter().map(offset).collect();
+        let known = || offsets.iter().flatten();
+        let mean = known().sum::<f64>() / known().count().max(1) as f64;
+        offsets.into_iter().map(|offset| offset.unwrap_or(mean)).collect()
     }
 }
 
-fn mortar(facets: &[Vec<Facet>; 2], [slave, master]: [&[[f64; 3]]; 2], along: Along) -> Mortar {
-    let face = |side: usize, positions| Face { facets: &facets[side], positions };
+fn mortar(facets: &[Vec<Facet>; 2], bends: &[Vec<Bend>; 2], [slave, master]: [&[[f64; 3]]; 2], along: Along) -> Mortar {
+    let face = |side: usize, positions| Face { facets: &facets[side], positions, bends: &bends[side] };
     Mortar::new(face(0, slave), face(1, master), along)
 }
 

@@ -1,8 +1,9 @@
 //! The rows of a contact between two bodies, from its mortar integrals.
 //!
 //! ```text
-//! v = Σ_j m_ij x_j − x_i,   gap = n·v − (interference) − n·(I − P) Σ w v̂      v̂: displacements that supports prescribe
-//! gap′ = n′·(v − (I − P) Σ w v̂) + n·(Σ_j m_ij′ x_j + Σ_j m_ij x_j′ − x_i′) + n·(I − P) Σ_j m_ij′ v̂_j
+//! gap = g − (interference) − n·(I − P) Σ w v̂      v̂: displacements that supports prescribe
+//! facets of second degree:  g = ∫ ψ_i ν·(Y_m − Y_s)/D_i,       flat facets:  g = n·v,  v = Σ_j m_ij x_j − x_i
+//! gap′ = g′ − n′·(I − P) Σ w v̂ + n·(I − P) Σ_j m_ij′ v̂_j
 //! ```
 
 use crate::equilibrium::ContactPoint;
@@ -76,9 +77,14 @@ impl PairRows {
                 0.0
             } else {
                 let imposed = point.imposed(&weights);
-                let distance = distance(point, &weights, &positions);
-                let less: [f64; 3] = std::array::from_fn(|axis| distance[axis] - imposed[axis]);
-                dot(normal, less) - part.interference
+                let offset = pair.offsets.get(index).copied().unwrap_or(0.0) - part.interference;
+                if mortar.is_bent() {
+                    node.gap - dot(normal, imposed) + offset
+                } else {
+                    let distance = distance(point, &weights, &positions);
+                    let less: [f64; 3] = std::array::from_fn(|axis| distance[axis] - imposed[axis]);
+                    dot(normal, less) + offset
+                }
             };
             rows.push(NodeRows::of_pair(point, normal, weights, gap, node.area));
             nodes.push((index, sides));
@@ -96,7 +102,7 @@ impl PairRows {
         add: &mut impl FnMut(usize, u32, [f64; 3]),
     ) {
         for ((point, row), own) in points.iter().zip(rows).zip(sensitivities) {
-            if self.is_tied || own.gap == 0.0 || !row.is_covered {
+            if self.is_tied || own.gap == 0.0 || !row.is_covered || self.mortar.is_bent() {
                 continue;
             }
             for (side, weight) in point.sides.iter().zip(&row.weights).filter(|(_, weight)| **weight != 0.0) {
@@ -115,15 +121,16 @@ impl PairRows {
             let mut by_side = own.weights.clone();
             by_side.resize(point.sides.len(), 0.0);
             if !self.is_tied && own.gap != 0.0 {
-                let (distance, imposed) = (distance(point, &row.weights, &self.positions), point.imposed(&row.weights));
-                (0..3).for_each(|axis| normal[axis] += own.gap * (distance[axis] - imposed[axis]));
+                let turned = self.by_normal(point, row);
+                (0..3).for_each(|axis| normal[axis] += own.gap * turned[axis]);
                 for (sum, slope) in by_side.iter_mut().zip(self.gap_slopes(point, row)) {
                     *sum += own.gap * slope;
                 }
             }
             // The weights of the master nodes are those of the sides with the opposite sign.
             let weights = sides.iter().map(|&side| if side > 0 { -by_side[side] } else { 0.0 }).collect();
-            of_nodes[*index] = NodeSensitivity { area: 0.0, weights, normal };
+            let gap = if self.is_tied || !self.mortar.is_bent() { 0.0 } else { own.gap };
+            of_nodes[*index] = NodeSensitivity { area: 0.0, weights, normal, gap };
         }
         self.add_mortar(&of_nodes, moves, add);
     }
@@ -156,13 +163,24 @@ impl PairRows {
             .pull_back(of_nodes, moving, &mut |side, node, sensitivity| add(self.bodies[side], node, sensitivity));
     }
 
+    /// The derivative of the gap by the normal, but for what it does in facets of second degree.
+    fn by_normal(&self, point: &ContactPoint, row: &NodeRows) -> [f64; 3] {
+        let imposed = point.imposed(&row.weights);
+        let distance = if self.mortar.is_bent() { [0.0; 3] } else { distance(point, &row.weights, &self.positions) };
+        std::array::from_fn(|axis| distance[axis] - imposed[axis])
+    }
+
     /// The derivatives of the gap by the weights of all sides.
     fn gap_slopes(&self, point: &ContactPoint, row: &NodeRows) -> Vec<f64> {
         // n − P n: what of the normal no row has.
         let rest: [f64; 3] = std::array::from_fn(|axis| row.normal[axis] - row.directions[0][axis]);
         let place = |which: usize, node: u32| self.positions[which][node as usize];
         let of_side = |(number, side): (usize, &crate::equilibrium::Side)| {
-            -dot(row.normal, place(usize::from(number > 0), side.node)) - dot(rest, side.prescribed)
+            let moved = -dot(rest, side.prescribed);
+            match self.mortar.is_bent() {
+                true => moved,
+                false => moved - dot(row.normal, place(usize::from(number > 0), side.node)),
+            }
         };
         point.sides.iter().enumerate().map(of_side).collect()
     }
@@ -180,6 +198,9 @@ impl PairRows {
             let moved = |side: &crate::equilibrium::Side| velocities.at(side.body, side.node, column);
             let sides_with_weights = point.sides.iter().zip(&row.weights).filter(|(_, weight)| **weight != 0.0);
             let mut gap: f64 = sides_with_weights.map(|(side, weight)| -weight * dot(row.normal, moved(side))).sum();
+            if self.mortar.is_bent() {
+                gap = 0.0;
+            }
             let mut change =
                 RowChange { directions: vec![[0.0; 3]; row.directions.len()], gap: 0.0, weights: Vec::new() };
             if !row.is_covered {
@@ -191,8 +212,7 @@ impl PairRows {
                 for (&side, weight) in sides.iter().zip(&own.weights).filter(|(side, _)| **side > 0) {
                     change.weights[side] = -weight;
                 }
-                let (distance, imposed) = (distance(point, &row.weights, &self.positions), point.imposed(&row.weights));
-                gap += (0..3).map(|axis| own.normal[axis] * (distance[axis] - imposed[axis])).sum::<f64>();
+                gap += own.gap + dot(own.normal, self.by_normal(point, row));
                 gap += self.gap_slopes(point, row).iter().zip(&change.weights).map(|(s, w)| s * w).sum::<f64>();
             }
             RowChange { gap: if self.is_tied { 0.0 } else { gap }, ..change }

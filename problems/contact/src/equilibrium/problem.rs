@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::body::elasticity::{Formulation, Material};
 use crate::body::loads::nodal_forces;
-use crate::body::mesh::{CellFace, Mesh, smallest_extent};
+use crate::body::mesh::{CellFace, Mesh, narrow, smallest_extent};
 use crate::equilibrium::cell_shapes::CellShapes;
 use crate::equilibrium::contact_moduli;
 use crate::equilibrium::contact_part::ContactPart;
@@ -11,7 +11,8 @@ use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows};
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
-use crate::scene::{Geometry, Scene};
+use crate::patches::{BentFace, MiddlePoint};
+use crate::scene::{BodyFace, FaceGeometry, Geometry, NormalKind, Scene};
 use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap, ShapeScene, Velocities, height_map};
 use std::sync::Arc;
 
@@ -50,13 +51,15 @@ impl ContactProblem {
     pub fn new(scene: Scene) -> Result<Self, SceneError> {
         scene.validate()?;
         let bodies = bodies(&scene)?;
-        let maps = maps(&scene, &bodies)?;
+        let bent = bent_faces(&scene, &bodies)?;
+        let maps = maps(&scene, &bodies, &bent.points)?;
         let meshes: Vec<&Mesh> = bodies.iter().map(|body| &*body.mesh).collect();
         let admissible = AdmissibleSet::new(&scene, &meshes, &maps)?;
         let map = ShapeMap::new(maps);
         let start = map.positions(&scene.start());
         check_start(&scene, &bodies, &start)?;
-        let part = |index: usize| ContactPart::new((&scene, index), &bodies, &map, &start);
+        let part =
+            |index: usize| ContactPart::new((&scene, index), &bodies, (&map, bent.contacts[index].as_ref()), &start);
         let parts = (0..scene.contacts.len()).map(part).collect::<Result<Vec<_>, SceneError>>()?;
         let boundary = ContactBoundary::new(&scene, &bodies, &parts)?;
         let shapes = bodies.iter().zip(&start).enumerate().map(|(number, (body, positions))| {
@@ -122,7 +125,7 @@ impl ContactProblem {
 
     /// Number of entries of the displacements of all bodies: three per node, in the order of the scene.
     pub fn displacement_count(&self) -> usize {
-        3 * self.map.node_count()
+        3 * self.bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>()
     }
 
     /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and, where J depends on it, ∂J/∂u over all bodies.
@@ -253,14 +256,14 @@ impl ContactProblem {
         result
     }
 
-    /// The number of a node of a body among those of all bodies.
+    /// The number of a node of a body among the points that shapes move: nodes and middles of edges of all bodies.
     pub fn node_number(&self, body: usize, node: u32) -> usize {
-        self.map.nodes(body).start + node as usize
+        self.map.points(body).start + node as usize
     }
 
-    /// Sensitivities of zero of the positions of all nodes.
+    /// Sensitivities of zero of the positions of all points.
     pub(crate) fn no_sensitivities(&self) -> Vec<[f64; 3]> {
-        vec![[0.0; 3]; self.map.node_count()]
+        vec![[0.0; 3]; self.map.point_count()]
     }
 
     /// The bodies as a rigid body analysis takes them.
@@ -354,20 +357,71 @@ fn bodies(scene: &Scene) -> Result<Vec<Body>, SceneError> {
     scene.bodies.iter().enumerate().map(body).collect()
 }
 
+/// The faces of contacts whose gaps are those of surfaces.
+struct BentFaces {
+    /// By contact; none where facets are taken as flat.
+    contacts: Vec<Option<[BentFace; 2]>>,
+    /// By body.
+    points: Vec<Vec<MiddlePoint>>,
+}
+
+/// Finds the middles of edges of all pairs of faces between which gaps are those of surfaces. Where nothing is bent, and
+/// no shape can bend it, flat facets are the surfaces.
+fn bent_faces(scene: &Scene, bodies: &[Body]) -> Result<BentFaces, SceneError> {
+    let mut all = BentFaces { contacts: Vec::new(), points: vec![Vec::new(); bodies.len()] };
+    for (index, contact) in scene.contacts.iter().enumerate() {
+        let master = contact.master_face().filter(|_| {
+            contact.normal == NormalKind::Surface && !contact.is_tied() && contact.geometry == FaceGeometry::Curved
+        });
+        let Some(master) = master else {
+            all.contacts.push(None);
+            continue;
+        };
+        let field = scene.contact_field(index);
+        let mut next: Vec<usize> =
+            (0..bodies.len()).map(|b| bodies[b].mesh.node_count() + all.points[b].len()).collect();
+        let mut face = |side: &str, face: &BodyFace| -> Result<BentFace, SceneError> {
+            let mesh = &bodies[face.body].mesh;
+            let faces = find_face(&format!("{field}.{side}"), &face.face, mesh)?;
+            let bent = BentFace::new(mesh, faces, narrow(next[face.body]));
+            next[face.body] += bent.points.len();
+            Ok(bent)
+        };
+        let both = [face("slave", &contact.slave)?, face("master", master)?];
+        let bodies = [contact.slave.body, master.body];
+        let moves = bodies.iter().any(|&body| scene.bodies[body].shape.is_some());
+        if !moves && !both.iter().any(|face| face.is_bent) {
+            all.contacts.push(None);
+            continue;
+        }
+        for (body, face) in bodies.into_iter().zip(&both) {
+            all.points[body].extend(&face.points);
+        }
+        all.contacts.push(Some(both));
+    }
+    Ok(all)
+}
+
 /// The maps of the bodies.
-fn maps(scene: &Scene, bodies: &[Body]) -> Result<Vec<BodyMap>, SceneError> {
-    let map = |(scene, body): (&crate::scene::BodyScene, &Body)| match (&scene.shape, &scene.geometry) {
-        (None, _) => Ok(BodyMap { base: body.mesh.nodes().to_vec(), controls: 0, rows: Vec::new() }),
-        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, |node| body.supported(node)),
+fn maps(scene: &Scene, bodies: &[Body], points: &[Vec<MiddlePoint>]) -> Result<Vec<BodyMap>, SceneError> {
+    let map = |((scene, body), points): ((&crate::scene::BodyScene, &Body), &Vec<MiddlePoint>)| match (
+        &scene.shape,
+        &scene.geometry,
+    ) {
+        (None, _) => {
+            let base = body.mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
+            Ok(BodyMap { base, controls: 0, rows: Vec::new() })
+        }
+        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, points, |node| body.supported(node)),
         (Some(ShapeScene::Heights(heights)), Geometry::Block(block)) => {
-            Ok(height_map(&heights.surface()?, block, heights.face))
+            Ok(height_map(&heights.surface()?, block, heights.face).with_middles(points))
         }
         (Some(ShapeScene::Heights(_)), Geometry::Mesh(_)) => {
             let allowed = "a lattice: a height surface shapes blocks only";
             Err(SceneError::out_of_range("surface", "a height surface of a mesh", allowed))
         }
     };
-    scene.bodies.iter().zip(bodies).map(map).collect()
+    scene.bodies.iter().zip(bodies).zip(points).map(map).collect()
 }
 
 /// Refuses meshes with inverted cells.

@@ -7,7 +7,7 @@
 use super::Along;
 use super::facet::Patch;
 use super::frame::{Bound, Frame, circle};
-use super::pair::{Raw, row_sums, visit};
+use super::pair::{COLUMNS, Raw, Wide, row_sums, visit};
 use super::planar::Planar;
 use super::polygon::Polygon;
 use nalgebra::Matrix4;
@@ -28,10 +28,10 @@ pub type Square = [[f64; 4]; 4];
 #[derive(Debug, Clone)]
 pub struct Pair {
     pub master: usize,
-    /// P.
-    pub mixed: Square,
-    /// W.
-    pub weights: Square,
+    /// P, gap and normal.
+    pub mixed: Wide<f64>,
+    /// W, and the same sums of gap and normal.
+    pub weights: Wide<f64>,
     /// Places of W in the list of all weights.
     pub slots: [[usize; 4]; 4],
 }
@@ -87,7 +87,12 @@ impl Cover {
             Candidate::new(other, &planar, &projected(&frame, master, other), heights)
         });
         let accepted = nearest(candidates.collect(), area);
-        let integrals = accepted.iter().map(|&other| (other, Raw::new(&planar, &projected(&frame, master, other))));
+        let own = slave.curve(facet);
+        let integrals = accepted.iter().map(|&other| {
+            let curve = master.curve(other);
+            let curves = own.as_ref().zip(curve.as_ref()).map(|(own, other)| [own, other]);
+            (other, Raw::new(&planar, &projected(&frame, master, other), curves))
+        });
         let mut cover = Self { frame, whole, basis: None, pairs: Vec::new() };
         cover.fill(integrals.collect(), area, slave.count(facet));
         Some(cover)
@@ -118,8 +123,8 @@ impl Cover {
     /// Σ_j W_ij = D_i holds to the rounding of M⁻¹; spread the rest in proportion to P.
     fn round_off(&mut self, sums: &[f64; 4]) {
         for (row, &sum) in sums.iter().enumerate() {
-            let total = |pick: fn(&Pair) -> &Square| {
-                self.pairs.iter().map(|pair| pick(pair)[row].iter().sum::<f64>()).sum::<f64>()
+            let total = |pick: fn(&Pair) -> &Wide<f64>| {
+                self.pairs.iter().map(|pair| pick(pair)[row][..4].iter().sum::<f64>()).sum::<f64>()
             };
             let (rest, whole) = (sum - total(|pair| &pair.weights), total(|pair| &pair.mixed));
             if whole > 0.0 {
@@ -189,13 +194,18 @@ impl Basis {
 }
 
 /// Add a matrix.
-pub fn add(sum: &mut Square, other: &Square) {
+pub fn add<const C: usize>(sum: &mut [[f64; C]; 4], other: &[[f64; C]; 4]) {
     sum.iter_mut().flatten().zip(other.iter().flatten()).for_each(|(entry, &part)| *entry += part);
 }
 
 /// A B.
-pub fn product(a: &Square, b: &Square) -> Square {
+pub fn product<const C: usize>(a: &Square, b: &[[f64; C]; 4]) -> [[f64; C]; 4] {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+/// A Bᵀ.
+pub fn outer(a: &Wide<f64>, b: &Wide<f64>) -> Square {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..COLUMNS).map(|k| a[i][k] * b[j][k]).sum()))
 }
 
 /// Aᵀ.

@@ -1,5 +1,7 @@
 //! Facets of a surface mesh and the part of the mesh they need.
 
+use super::curve::{Bend, Curve, NODES, Remainder};
+
 /// Three or four corner nodes, counterclockwise seen from outside the own body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Facet {
@@ -27,6 +29,15 @@ impl Facet {
 pub struct Face<'a> {
     pub facets: &'a [Facet],
     pub positions: &'a [[f64; 3]],
+    /// Middles of the edges, whose positions follow those of the nodes; one per facet, or none for flat facets.
+    pub bends: &'a [Bend],
+}
+
+/// A facet of second degree in the numbers of a [`Patch`]: corners, then middles.
+#[derive(Debug, Clone, Copy)]
+pub struct LocalBend {
+    pub nodes: [usize; NODES],
+    remainder: Option<Remainder>,
 }
 
 /// A facet in the numbers of a [`Patch`].
@@ -57,8 +68,13 @@ impl Local {
 pub struct Patch {
     /// Nodes of the mesh, ascending.
     pub nodes: Vec<u32>,
+    /// Middles of edges, ascending; none for flat facets.
+    pub middles: Vec<u32>,
+    /// Positions of the nodes, then of the middles.
     pub positions: Vec<[f64; 3]>,
     pub facets: Vec<Local>,
+    /// One per facet; none for flat facets.
+    pub bends: Vec<LocalBend>,
 }
 
 impl Patch {
@@ -68,9 +84,34 @@ impl Patch {
         nodes.dedup();
         let number = |node: u32| nodes.partition_point(|&other| other < node);
         let local = |facet: &Facet| Local { corners: facet.corners.map(number), count: facet.corners().len() };
-        let facets = face.facets.iter().map(local).collect();
-        let positions = nodes.iter().map(|&node| face.positions[node as usize]).collect();
-        Self { nodes, positions, facets }
+        let facets: Vec<Local> = face.facets.iter().map(local).collect();
+        let used = |(facet, bend): (&Facet, &Bend)| bend.middles.into_iter().take(facet.corners().len());
+        let mut middles: Vec<u32> = face.facets.iter().zip(face.bends).flat_map(used).collect();
+        middles.sort_unstable();
+        middles.dedup();
+        let middle = |number: u32| nodes.len() + middles.partition_point(|&other| other < number);
+        let bends = facets.iter().zip(face.bends).map(|(facet, bend)| {
+            let own = |k: usize| match k.checked_sub(4) {
+                None => facet.corners[k],
+                Some(edge) => middle(bend.middles[edge.min(facet.count - 1)]),
+            };
+            LocalBend { nodes: std::array::from_fn(own), remainder: bend.remainder }
+        });
+        let bends = bends.collect();
+        let positions = nodes.iter().chain(&middles).map(|&node| face.positions[node as usize]).collect();
+        Self { nodes, middles, positions, facets, bends }
+    }
+
+    /// Nodes and middles in the order of the positions.
+    pub fn points(&self) -> impl Iterator<Item = u32> + '_ {
+        self.nodes.iter().chain(&self.middles).copied()
+    }
+
+    /// A facet of second degree; none where facets are flat.
+    pub fn curve(&self, facet: usize) -> Option<Curve> {
+        let bend = self.bends.get(facet)?;
+        let nodes = bend.nodes.map(|node| self.positions[node]);
+        Some(Curve { count: self.count(facet), nodes, remainder: bend.remainder })
     }
 
     /// The facets in the opposite sense, so that seen from the opposite surface they are counterclockwise.
@@ -78,6 +119,13 @@ impl Patch {
         for facet in &mut self.facets {
             let [a, b, c, d] = facet.corners;
             facet.corners = if facet.count == 4 { [a, d, c, b] } else { [a, c, b, b] };
+        }
+        for (bend, facet) in self.bends.iter_mut().zip(&self.facets) {
+            let order = if facet.count == 4 { [0, 3, 2, 1, 7, 6, 5, 4] } else { [0, 2, 1, 1, 6, 5, 4, 4] };
+            bend.nodes = order.map(|k| bend.nodes[k]);
+            if let Some(remainder) = &mut bend.remainder {
+                remainder.start = order.map(|k| remainder.start[k]);
+            }
         }
         self
     }

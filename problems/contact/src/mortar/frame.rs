@@ -116,7 +116,7 @@ impl Frame {
     }
 
     /// Transpose of [`Self::turning`]: adds the sensitivities to the corners of the own facet.
-    pub fn turned_back(&self, turning: [f64; 2], corners: &mut [[f64; 3]; 4]) {
+    pub fn turned_back(&self, turning: [f64; 2], corners: &mut [[f64; 3]]) {
         let Some(tilt) = self.tilt else { return };
         let [d1, d2] = tilt.diagonals;
         let force: [f64; 3] =

@@ -14,6 +14,7 @@
 //! goes on beyond its edge.
 
 mod cover;
+mod curve;
 mod derivative;
 mod facet;
 mod frame;
@@ -22,14 +23,17 @@ mod normals;
 mod pair;
 mod planar;
 mod polygon;
-mod vector;
+mod primitive;
+pub(crate) mod vector;
 mod weights;
 
 #[cfg(test)]
 mod tests;
 
+pub use curve::{Bend, Remainder};
 pub use derivative::NodeSensitivity;
 pub use facet::{Face, Facet};
+pub use primitive::Primitive;
 pub use weights::{Mortar, MortarNode};
 
 /// Direction of projection, and normals of the nodes.

@@ -63,7 +63,7 @@ pub fn unit(area: [f64; 3]) -> [f64; 3] {
 }
 
 /// (I − n nᵀ) v/|N|: the derivative of the unit vector, which is its own transpose.
-fn turned(area: [f64; 3], change: [f64; 3]) -> [f64; 3] {
+pub fn turned(area: [f64; 3], change: [f64; 3]) -> [f64; 3] {
     let (size, normal) = (length(area), unit(area));
     if size > 0.0 { plus(change, -dot(normal, change), normal).map(|component| component / size) } else { [0.0; 3] }
 }

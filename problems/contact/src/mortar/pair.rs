@@ -2,9 +2,11 @@
 //!
 //! ```text
 //! M_kl = ∫ N_k N_l,   P_kj = ∫ N_k Nᵐ_j,   D_k = ∫ N_k = Σ_l M_kl
+//! of facets of second degree also:  ∫ N_k ν·(Y_m − Y_s),   ∫ N_k ν       ν: unit normal of the slave facet Y_s
 //! fan of triangles about the centroid of the area, sixteen points of degree 8 in each
 //! ```
 
+use super::curve::{Curve, NODES, Quadratic, cross as cross3, dot as dot3};
 use super::gradient::Gradient;
 use super::planar::{Element, Planar};
 use super::polygon::{Polygon, cross, minus, scaled};
@@ -19,8 +21,17 @@ const ON_EDGE: f64 = 1e-11;
 /// Coordinates of the projected corners: slave, then master.
 pub const INPUTS: usize = 16;
 
-/// Numbers of [`Raw`].
-pub const OUTPUTS: usize = 26;
+/// Columns of P, and after them those of facets of second degree: gap and the three components of the normal.
+pub const COLUMNS: usize = 8;
+
+/// The column of ∫ N_k ν·(Y_m − Y_s).
+pub const GAP: usize = 4;
+
+/// The first column of ∫ N_k ν.
+pub const NORMAL: usize = 5;
+
+/// A matrix with a row per corner of the slave facet.
+pub type Wide<T> = [[T; COLUMNS]; 4];
 
 /// k and l of the numbers of M.
 pub const SYMMETRIC: [[usize; 2]; 10] =
@@ -30,11 +41,26 @@ pub const SYMMETRIC: [[usize; 2]; 10] =
 #[derive(Debug, Clone, Copy)]
 pub struct Raw<T> {
     pub own: [T; 10],
-    pub mixed: [[T; 4]; 4],
+    /// P, then gap and normal; zero for flat facets.
+    pub mixed: Wide<T>,
 }
 
-/// Derivatives of the numbers of [`Raw`] by the projected corners.
-pub type Jacobian = [[f64; INPUTS]; OUTPUTS];
+/// Derivatives of the numbers of [`Raw`].
+#[derive(Debug)]
+pub struct Jacobian {
+    /// By the projected corners: M, then row by row the columns that there are.
+    planar: Vec<[f64; INPUTS]>,
+    /// By the nodes of facets of second degree at fixed integration points; none for flat facets.
+    spatial: Option<Box<Spatial>>,
+}
+
+/// Derivatives of gap and normal by the nodes of the slave facet and of the master facet.
+#[derive(Debug)]
+struct Spatial {
+    gap: [[[[f64; 3]; NODES]; 2]; 4],
+    /// By the nodes of the slave facet: rows are components of the normal.
+    normal: [[[[f64; 3]; 3]; NODES]; 4],
+}
 
 /// Barycentric coordinates and weights of the rule of degree 8 \[Dunavant1985\]: centre, then two kinds of orbits.
 fn rule() -> impl Iterator<Item = ([f64; 3], f64)> {
@@ -85,38 +111,38 @@ pub fn visit<T: Scalar>(
 
 impl<T: Scalar> Raw<T> {
     pub fn zero() -> Self {
-        Self { own: [T::constant(0.0); 10], mixed: [[T::constant(0.0); 4]; 4] }
+        Self { own: [T::constant(0.0); 10], mixed: [[T::constant(0.0); COLUMNS]; 4] }
     }
 
     /// Integrate over the common part of two projected facets.
-    pub fn new(slave: &Planar<T>, master: &Planar<T>) -> Self {
+    pub fn new(slave: &Planar<T>, master: &Planar<T>, curves: Option<[&Curve; 2]>) -> Self {
         let mut sums = Self::zero();
-        visit(slave, master, |common, own, other| sums.add_part(common, own, other));
+        visit(slave, master, |common, own, other| {
+            points(common, |weight, point| sums.add_point(weight, own.shape(point), other.shape(point), curves));
+        });
         sums
     }
 
-    fn add_part(&mut self, common: &Polygon<T>, own: &Element<'_, T>, other: &Element<'_, T>) {
-        let centre = common.centroid();
-        for [from, to] in common.edges() {
-            let area = scaled(cross(minus(from, centre), minus(to, centre)), 0.5);
-            for (barycentric, weight) in rule() {
-                let at = |axis: usize| {
-                    let sum = scaled(centre[axis], barycentric[0]) + scaled(from[axis], barycentric[1]);
-                    sum + scaled(to[axis], barycentric[2])
-                };
-                let point = [at(0), at(1)];
-                self.add_point(scaled(area, weight), own.shape(point), other.shape(point));
-            }
-        }
-    }
-
-    fn add_point(&mut self, weight: T, own: [T; 4], other: [T; 4]) {
+    fn add_point(&mut self, weight: T, own: [T; 4], other: [T; 4], curves: Option<[&Curve; 2]>) {
         let weighted = own.map(|value| value * weight);
         for (sum, [k, l]) in self.own.iter_mut().zip(SYMMETRIC) {
             *sum += weighted[k] * own[l];
         }
         for (row, &value) in self.mixed.iter_mut().zip(&weighted) {
             row.iter_mut().zip(&other).for_each(|(sum, &factor)| *sum += value * factor);
+        }
+        let Some([slave, master]) = curves else { return };
+        let own = Quadratic::new(slave.count, own);
+        let other = Quadratic::new(master.count, other);
+        let [a, b] = own.tangents(&slave.nodes);
+        let area = cross3(a, b);
+        let size = dot3(area, area).sqrt();
+        let normal = area.map(|component| component / size);
+        let (from, to) = (own.point(slave), other.point(master));
+        let gap = dot3(normal, std::array::from_fn(|axis| to[axis] - from[axis]));
+        for (row, &value) in self.mixed.iter_mut().zip(&weighted) {
+            row[GAP] += value * gap;
+            (0..3).for_each(|axis| row[NORMAL + axis] += value * normal[axis]);
         }
     }
 
@@ -136,8 +162,23 @@ pub fn row_sums(matrix: &[[f64; 4]; 4]) -> [f64; 4] {
     matrix.map(|row| row.iter().sum())
 }
 
-/// Differentiate the integrals of a pair by the projected corners.
-pub fn jacobian(slave: &Planar<f64>, master: &Planar<f64>) -> Jacobian {
+/// Visit weights and points of the rule over a polygon.
+fn points<T: Scalar>(common: &Polygon<T>, mut visit: impl FnMut(T, [T; 2])) {
+    let centre = common.centroid();
+    for [from, to] in common.edges() {
+        let area = scaled(cross(minus(from, centre), minus(to, centre)), 0.5);
+        for (barycentric, weight) in rule() {
+            let at = |axis: usize| {
+                let sum = scaled(centre[axis], barycentric[0]) + scaled(from[axis], barycentric[1]);
+                sum + scaled(to[axis], barycentric[2])
+            };
+            visit(scaled(area, weight), [at(0), at(1)]);
+        }
+    }
+}
+
+/// Differentiate the integrals of a pair.
+pub fn jacobian(slave: &Planar<f64>, master: &Planar<f64>, curves: Option<[&Curve; 2]>) -> Jacobian {
     let lifted = |facet: &Planar<f64>, first: usize| Planar {
         corners: std::array::from_fn(|corner| {
             std::array::from_fn(|axis| {
@@ -146,27 +187,108 @@ pub fn jacobian(slave: &Planar<f64>, master: &Planar<f64>) -> Jacobian {
         }),
         count: facet.count,
     };
-    let raw = Raw::new(&lifted(slave, 0), &lifted(master, 8));
-    let mut rows = raw.own.iter().chain(raw.mixed.iter().flatten()).map(|number| number.slopes);
-    std::array::from_fn(|_| rows.next().unwrap_or([0.0; INPUTS]))
+    let raw = Raw::new(&lifted(slave, 0), &lifted(master, 8), curves);
+    let columns = if curves.is_some() { COLUMNS } else { 4 };
+    let mixed = raw.mixed.iter().flat_map(|row| &row[..columns]);
+    let planar = raw.own.iter().chain(mixed).map(|number| number.slopes).collect();
+    let spatial = curves.map(|curves| Box::new(Spatial::new(slave, master, curves)));
+    Jacobian { planar, spatial }
 }
 
-/// Apply the Jacobian to velocities of the projected corners.
-pub fn forward(jacobian: &Jacobian, velocities: &[f64; INPUTS]) -> Raw<f64> {
-    let change = |row: usize| jacobian[row].iter().zip(velocities).map(|(slope, velocity)| slope * velocity).sum();
-    Raw {
-        own: std::array::from_fn(change),
-        mixed: std::array::from_fn(|k| std::array::from_fn(|j| change(10 + 4 * k + j))),
+/// Velocities of, or sensitivities to, the nodes of the slave facet and of the master facet.
+pub type OfNodes = [[[f64; 3]; NODES]; 2];
+
+impl Jacobian {
+    /// Columns of P, gap and normal that there are.
+    fn columns(&self) -> usize {
+        (self.planar.len() - SYMMETRIC.len()) / 4
+    }
+
+    /// Apply it to velocities of the projected corners and of all nodes.
+    pub fn forward(&self, velocities: &[f64; INPUTS], nodes: &OfNodes) -> Raw<f64> {
+        let planar = &self.planar;
+        let change = |row: usize| planar[row].iter().zip(velocities).map(|(slope, velocity)| slope * velocity).sum();
+        let mut raw = Raw { own: std::array::from_fn(change), ..Raw::zero() };
+        let columns = self.columns();
+        for (k, row) in raw.mixed.iter_mut().enumerate() {
+            (0..columns).for_each(|j| row[j] = change(SYMMETRIC.len() + columns * k + j));
+            let Some(spatial) = &self.spatial else { continue };
+            for (slopes, velocities) in spatial.gap[k].iter().zip(nodes) {
+                row[GAP] += slopes.iter().zip(velocities).map(|(slope, v)| dot3(*slope, *v)).sum::<f64>();
+            }
+            for (slopes, v) in spatial.normal[k].iter().zip(&nodes[0]) {
+                (0..3).for_each(|axis| row[NORMAL + axis] += dot3(slopes[axis], *v));
+            }
+        }
+        raw
+    }
+
+    /// Apply its transpose to sensitivities of the integrals.
+    pub fn backward(&self, sensitivities: &Raw<f64>) -> ([f64; INPUTS], OfNodes) {
+        let (mut sums, mut nodes) = ([0.0; INPUTS], [[[0.0; 3]; NODES]; 2]);
+        let columns = self.columns();
+        let factors = sensitivities.own.iter().chain(sensitivities.mixed.iter().flat_map(|row| &row[..columns]));
+        for (row, &factor) in self.planar.iter().zip(factors) {
+            sums.iter_mut().zip(row).for_each(|(sum, slope)| *sum += factor * slope);
+        }
+        if let Some(spatial) = &self.spatial {
+            for (k, row) in sensitivities.mixed.iter().enumerate() {
+                let mut add = |side: usize, node: usize, factor: f64, slope: [f64; 3]| {
+                    (0..3).for_each(|axis| nodes[side][node][axis] += factor * slope[axis]);
+                };
+                for node in 0..NODES {
+                    (0..2).for_each(|side| add(side, node, row[GAP], spatial.gap[k][side][node]));
+                    let slopes = spatial.normal[k][node];
+                    (0..3).for_each(|axis| add(0, node, row[NORMAL + axis], slopes[axis]));
+                }
+            }
+        }
+        (sums, nodes)
     }
 }
 
-/// Apply the transposed Jacobian to sensitivities of the integrals.
-pub fn backward(jacobian: &Jacobian, sensitivities: &Raw<f64>) -> [f64; INPUTS] {
-    let mut sums = [0.0; INPUTS];
-    for (row, &factor) in jacobian.iter().zip(sensitivities.own.iter().chain(sensitivities.mixed.iter().flatten())) {
-        sums.iter_mut().zip(row).for_each(|(sum, slope)| *sum += factor * slope);
+impl Spatial {
+    fn new(slave: &Planar<f64>, master: &Planar<f64>, curves: [&Curve; 2]) -> Self {
+        let mut sums = Self { gap: [[[[0.0; 3]; NODES]; 2]; 4], normal: [[[[0.0; 3]; 3]; NODES]; 4] };
+        visit(slave, master, |common, own, other| {
+            points(common, |weight, point| sums.add_point(weight, own.shape(point), other.shape(point), curves));
+        });
+        sums
     }
-    sums
+
+    /// ```text
+    /// ∂ν = (I − ν νᵀ)(∂a × b + a × ∂b)/|a × b|,   ∂(ν·(Y_m − Y_s)) = ∂ν·(Y_m − Y_s) + ν·(∂Y_m − ∂Y_s)
+    /// ```
+    fn add_point(&mut self, weight: f64, own: [f64; 4], other: [f64; 4], [slave, master]: [&Curve; 2]) {
+        let weighted = own.map(|value| value * weight);
+        let (own, other) = (Quadratic::new(slave.count, own), Quadratic::new(master.count, other));
+        let [a, b] = own.tangents(&slave.nodes);
+        let area = cross3(a, b);
+        let size = dot3(area, area).sqrt();
+        let normal = area.map(|component| component / size);
+        let (from, to) = (own.point(slave), other.point(master));
+        // The transpose of ∂ν at one node, for a vector.
+        let turned = |slopes: [f64; 2], vector: [f64; 3]| -> [f64; 3] {
+            let along = dot3(normal, vector);
+            let across: [f64; 3] = std::array::from_fn(|axis| (vector[axis] - along * normal[axis]) / size);
+            let (by_a, by_b) = (cross3(b, across), cross3(across, a));
+            std::array::from_fn(|axis| slopes[0] * by_a[axis] + slopes[1] * by_b[axis])
+        };
+        let distance = std::array::from_fn(|axis| to[axis] - from[axis]);
+        for node in 0..NODES {
+            let by_distance = turned(own.slopes[node], distance);
+            let by_axis: [[f64; 3]; 3] = std::array::from_fn(|axis| {
+                turned(own.slopes[node], std::array::from_fn(|other| if other == axis { 1.0 } else { 0.0 }))
+            });
+            for (k, &weight) in weighted.iter().enumerate() {
+                for axis in 0..3 {
+                    self.gap[k][0][node][axis] += weight * (by_distance[axis] - own.values[node] * normal[axis]);
+                    self.gap[k][1][node][axis] += weight * other.values[node] * normal[axis];
+                    (0..3).for_each(|to| self.normal[k][node][axis][to] += weight * by_axis[axis][to]);
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -189,19 +311,19 @@ mod tests {
     fn integrals_of_two_shifted_squares() {
         // [0, 1]² and [1/2, 3/2] × [0, 1]: N_0 = (1 − x)(1 − y), Nᵐ_0 = (3/2 − x)(1 − y).
         let square = |x: f64| Planar { corners: [[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]], count: 4 };
-        let raw = Raw::new(&square(0.0), &square(0.5));
+        let raw = Raw::new(&square(0.0), &square(0.5), None);
         let inner = |f: fn(f64) -> f64| {
             [0.5, 0.75, 1.0].iter().zip([1.0, 4.0, 1.0]).map(|(&x, w)| w * f(x)).sum::<f64>() / 12.0
         };
         let (own, mixed) = (inner(|x| (1.0 - x) * (1.0 - x)), inner(|x| (1.0 - x) * (1.5 - x)));
         assert!((raw.own[0] - own / 3.0).abs() < 1e-16 && (raw.mixed[0][0] - mixed / 3.0).abs() < 1e-16);
         // The derivative of ∫∫ by a common shift of the master's left corners, d/ds: −N_0 Nᵐ_0 at the edge, and Nᵐ_0′.
-        let jacobian = jacobian(&square(0.0), &square(0.5));
+        let jacobian = jacobian(&square(0.0), &square(0.5), None);
         let difference = |s: f64| {
             let master = Planar { corners: [[0.5 + s, 0.0], [1.5, 0.0], [1.5, 1.0], [0.5 + s, 1.0]], count: 4 };
-            Raw::new(&square(0.0), &master).mixed[0][0]
+            Raw::new(&square(0.0), &master, None).mixed[0][0]
         };
-        let slope = jacobian[10][8] + jacobian[10][14];
+        let slope = jacobian.planar[10][8] + jacobian.planar[10][14];
         assert!((slope - (difference(1e-5) - difference(-1e-5)) / 2e-5).abs() < 1e-9);
     }
 }

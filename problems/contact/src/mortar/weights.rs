@@ -1,6 +1,7 @@
 //! Mortar weights of the nodes of the slave surface.
 //!
 //! ```text
+//! of facets of second degree:  gap_i = Σ_e ∫ ψ_i ν·(Y_m − Y_s) / D_i,   N_i = Σ_e ∫ ψ_i ν,   n_i = N_i/|N_i|
 //! D_i = Σ_e D_e,i,   m_ij = Σ_e W_e,ij / D_i,   A_i = Σ_e ∫_whole N_i,   covered share = D_i / A_i
 //! ```
 
@@ -9,7 +10,7 @@ use super::cover::Cover;
 use super::facet::{Face, Patch};
 use super::frame::Bound;
 use super::normals::{unit, vector_areas};
-use super::pair::Jacobian;
+use super::pair::{GAP, Jacobian, NORMAL};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
@@ -31,6 +32,8 @@ pub struct MortarNode {
     /// Nodes of the master surface, ascending, and weights that add up to 1; none if `area` is 0. Weights that vanish
     /// only by chance are listed, since their derivatives do not.
     pub weights: Vec<(u32, f64)>,
+    /// Of facets of second degree, ∫ ψ_i ν·(Y_m − Y_s)/D_i, mm; 0 for flat facets and where `area` is 0.
+    pub gap: f64,
 }
 
 /// The coupling of two surfaces.
@@ -46,6 +49,7 @@ pub struct Mortar {
     pub(super) covers: Vec<Option<Cover>>,
     /// First place of each node in the list of all weights, and the end.
     pub(super) starts: Vec<usize>,
+    /// N_i.
     pub(super) vector_areas: Vec<[f64; 3]>,
     /// Per slave facet and pair.
     pub(super) jacobians: OnceLock<Vec<Vec<Jacobian>>>,
@@ -67,13 +71,41 @@ impl Mortar {
         mortar
     }
 
+    /// Whether facets are of second degree.
+    pub fn is_bent(&self) -> bool {
+        !self.slave.bends.is_empty() && !self.master.bends.is_empty()
+    }
+
+    /// Σ over the pairs of a slave facet of gap and normal of a corner.
+    fn add_bent(&mut self, gaps: &mut [f64]) {
+        let mut normals = vec![[0.0; 3]; gaps.len()];
+        for (facet, cover) in self.covers() {
+            for (corner, &node) in self.slave.facets[facet].corners().iter().enumerate() {
+                for weights in cover.pairs.iter().map(|pair| &pair.weights[corner]) {
+                    gaps[node] += weights[GAP];
+                    (0..3).for_each(|axis| normals[node][axis] += weights[NORMAL + axis]);
+                }
+            }
+        }
+        // Nodes that nothing covers keep the vector areas of their facets.
+        for (own, normal) in self.vector_areas.iter_mut().zip(normals) {
+            if normal != [0.0; 3] {
+                *own = normal;
+            }
+        }
+    }
+
     /// Slave facets in a plane, with their numbers.
     pub(super) fn covers(&self) -> impl Iterator<Item = (usize, &Cover)> {
         self.covers.iter().enumerate().filter_map(|(facet, cover)| Some((facet, cover.as_ref()?)))
     }
 
-    fn assembled(&self, columns: &[usize]) -> Vec<MortarNode> {
+    fn assembled(&mut self, columns: &[usize]) -> Vec<MortarNode> {
         let count = self.slave.nodes.len();
+        let mut gaps = vec![0.0; count];
+        if self.is_bent() {
+            self.add_bent(&mut gaps);
+        }
         let (mut areas, mut whole) = (vec![0.0; count], vec![0.0; count]);
         let mut values = vec![0.0; columns.len()];
         for (facet, cover) in self.covers() {
@@ -100,6 +132,7 @@ impl Mortar {
                 covered: if covered { area / whole[node] } else { 0.0 },
                 whole: whole[node],
                 weights: places.map(weight).collect(),
+                gap: if covered { gaps[node] / area } else { 0.0 },
             }
         };
         (0..count).map(node).collect()

@@ -72,6 +72,24 @@ pub struct ContactScene {
     /// How far the bodies are pressed into each other before loading, along the normals of the contact nodes, mm: every
     /// gap is smaller by it. Negative: a clearance.
     pub interference: f64,
+    /// The gap at the start, mm, whatever the meshes say: later changes of the shape count. Negative: the bodies overlap
+    /// by it. None: the faces tell the gaps. Between bodies only, and not with an interference.
+    pub clearance: Option<f64>,
+    /// Which surfaces the gaps between two bodies are measured between.
+    pub geometry: FaceGeometry,
+}
+
+/// What lies between the nodes of faces of two bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(transform = crate::schema::names_only))]
+pub enum FaceGeometry {
+    /// Surfaces of second degree through the middle nodes of the file, on a plane, cylinder, cone or sphere that all
+    /// nodes lie on, or from normals fitted to the nodes around.
+    #[default]
+    Curved,
+    /// The flat facets of the meshes, for comparison.
+    Facets,
 }
 
 impl ContactScene {
@@ -86,6 +104,8 @@ impl ContactScene {
             friction,
             friction_by_region: Vec::new(),
             interference: 0.0,
+            clearance: None,
+            geometry: FaceGeometry::Curved,
         }
     }
 

@@ -173,6 +173,11 @@ impl Scene {
         let interference = contact.interference;
         let place = format!("{field}.interference");
         SceneError::require(interference.is_finite(), place, interference, "a finite number (mm)")?;
+        if let Some(clearance) = contact.clearance {
+            let valid = clearance.is_finite() && interference == 0.0 && contact.master_face().is_some();
+            let allowed = "a finite number (mm), for two bodies, without an interference besides";
+            SceneError::require(valid && !contact.is_tied(), format!("{field}.clearance"), clearance, allowed)?;
+        }
         let exists = |part: &str, own: &crate::scene::BodyFace| {
             let allowed = format!("one of the {} bodies", self.bodies.len());
             SceneError::require(own.body < self.bodies.len(), format!("{field}.{part}.body"), own.body, allowed)

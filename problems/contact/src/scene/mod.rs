@@ -14,7 +14,7 @@ mod presets;
 mod size;
 
 pub use body::BodyScene;
-pub use contact::{AreaKind, BodyFace, ContactKind, ContactScene, Master, NormalKind};
+pub use contact::{AreaKind, BodyFace, ContactKind, ContactScene, FaceGeometry, Master, NormalKind};
 pub use counter_surface::{CounterSurface, Side};
 pub(crate) use definition::Opposite;
 pub use definition::Scene;

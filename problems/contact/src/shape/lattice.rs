@@ -11,6 +11,7 @@
 use crate::body::mesh::{Mesh, bounding_box};
 use crate::error::SceneError;
 use crate::names::{find_face, nodes_of};
+use crate::patches::MiddlePoint;
 use crate::shape::BodyMap;
 use crate::shape::bspline::Basis;
 use serde::{Deserialize, Serialize};
@@ -195,7 +196,12 @@ impl LatticeShape {
     /// # Errors
     /// [`SceneError::OutOfRange`] for names that the mesh does not have, and for a lattice that holds no node that may
     /// move.
-    pub(crate) fn map<'b>(&self, mesh: &Mesh, held: impl Fn(u32) -> &'b [[f64; 3]]) -> Result<BodyMap, SceneError> {
+    pub(crate) fn map<'b>(
+        &self,
+        mesh: &Mesh,
+        points: &[MiddlePoint],
+        held: impl Fn(u32) -> &'b [[f64; 3]],
+    ) -> Result<BodyMap, SceneError> {
         let (bases, controls) = (self.bases()?, self.controls());
         let mut by_point: HashMap<(usize, usize), Vec<(usize, f64)>> = HashMap::new();
         for (number, control) in controls.iter().enumerate() {
@@ -216,27 +222,36 @@ impl LatticeShape {
             }
         };
         let (mut rows, mut moved) = (Vec::with_capacity(3 * mesh.node_count()), 0);
-        for node in 0..mesh.node_count() as u32 {
-            let free = !fixed.contains(&node) && region.as_ref().is_none_or(|region| region.contains(&node));
-            let place = self.place(mesh.nodes()[node as usize]).filter(|_| free);
+        // A middle is fixed, or in the region, where both ends of its edge are.
+        let row = |x: [f64; 3], ends: &[u32], held: &[[f64; 3]]| {
+            let is_in = |set: &BTreeSet<u32>| ends.iter().all(|end| set.contains(end));
+            let free = !is_in(&fixed) && region.as_ref().is_none_or(is_in);
+            let place = self.place(x).filter(|_| free);
             let directions = match (&normals, place) {
                 (_, None) => None,
                 (None, Some((_, frame))) => Some(frame.to_vec()),
-                (Some(normals), Some(_)) => normals.get(&node).map(|normal| vec![*normal]),
+                (Some(normals), Some(_)) => mean_normal(ends.iter().map(|end| normals.get(end))).map(|n| vec![n]),
             };
-            let row = match (place, directions) {
-                (Some((xi, _)), Some(directions)) => self.rows(xi, &directions, &bases, &by_point, held(node)),
+            match (place, directions) {
+                (Some((xi, _)), Some(directions)) => self.rows(xi, &directions, &bases, &by_point, held),
                 _ => [vec![], vec![], vec![]],
-            };
+            }
+        };
+        for node in 0..mesh.node_count() as u32 {
+            let row = row(mesh.nodes()[node as usize], &[node], held(node));
             moved += usize::from(row.iter().any(|row| !row.is_empty()));
             rows.extend(row);
+        }
+        for MiddlePoint { ends, place } in points {
+            rows.extend(row(*place, ends, &common(ends.map(&held))));
         }
         if moved == 0 {
             let [least, most] = bounding_box(mesh.nodes());
             let allowed = format!("a box around nodes that may move; the body lies between {least:?} and {most:?} mm");
             return Err(SceneError::out_of_range("lattice", "a box without such nodes", allowed));
         }
-        Ok(BodyMap { base: mesh.nodes().to_vec(), controls: controls.len(), rows })
+        let base = mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
+        Ok(BodyMap { base, controls: controls.len(), rows })
     }
 
     /// The nodes of the region; none where all nodes in the box move.
@@ -374,6 +389,25 @@ impl LatticeShape {
         };
         self.controls().iter().map(name).collect()
     }
+}
+
+/// The held directions of the first that the second has too.
+fn common([first, second]: [&[[f64; 3]]; 2]) -> Vec<[f64; 3]> {
+    let is_held = |direction: &&[f64; 3]| {
+        let square: f64 = second.iter().map(|other| dot(**direction, *other).powi(2)).sum();
+        (square - 1.0).abs() < 1e-8
+    };
+    first.iter().filter(is_held).copied().collect()
+}
+
+/// The mean of unit normals at length one; none where one is missing.
+fn mean_normal<'n>(normals: impl Iterator<Item = Option<&'n [f64; 3]>>) -> Option<[f64; 3]> {
+    let all: Vec<[f64; 3]> = normals.map(Option::<&[f64; 3]>::copied).collect::<Option<_>>()?;
+    if let [only] = all[..] {
+        return Some(only);
+    }
+    let sum = all.iter().fold([0.0; 3], |sum, normal| combine(sum, 1.0, *normal, 1.0));
+    Some(unit(sum))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -3,16 +3,19 @@
 //! ```text
 //! x(α) = x₀ + N α,     sensitivities of α = Nᵀ (sensitivities of x),     velocities x′ = N α′
 //! ```
-//! Nodes are counted through all bodies, in the order of the scene, and so are controls.
+//! Points, nodes and then middles of edges, are counted through all bodies, in the order of the scene, and so are
+//! controls.
 
 use crate::linear::csr::Csr;
+use crate::patches::MiddlePoint;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Positions of the nodes of all bodies, mm.
 pub type Positions = Vec<Arc<Vec<[f64; 3]>>>;
 
-/// x₀ and N of one body, with controls of its own.
+/// x₀ and N of one body, with controls of its own: of its nodes, then of the middles of edges of curved faces.
 #[derive(Debug, Clone)]
 pub(crate) struct BodyMap {
     /// Positions for controls 0, mm.
@@ -23,6 +26,24 @@ pub(crate) struct BodyMap {
 }
 
 impl BodyMap {
+    /// With middles of edges that move as the mean of their ends.
+    pub(crate) fn with_middles(mut self, points: &[MiddlePoint]) -> Self {
+        for point in points {
+            let rows: [Vec<(usize, f64)>; 3] = std::array::from_fn(|axis| {
+                let mut sums = BTreeMap::new();
+                let ends = point.ends.iter().flat_map(|&end| self.row(end, axis));
+                ends.for_each(|&(control, value)| *sums.entry(control).or_insert(0.0) += 0.5 * value);
+                sums.into_iter().collect()
+            });
+            let is_still = rows.iter().all(Vec::is_empty);
+            let [a, b] = point.ends.map(|end| self.base[end as usize]);
+            let mean = std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]));
+            self.base.push(if is_still { point.place } else { mean });
+            self.rows.extend(rows);
+        }
+        self
+    }
+
     /// A row of N: how a component of the position of a node depends on the controls.
     pub(crate) fn row(&self, node: u32, axis: usize) -> &[(usize, f64)] {
         self.rows.get(3 * node as usize + axis).map_or(&[], Vec::as_slice)
@@ -64,17 +85,17 @@ impl ShapeMap {
         self.matrix.column_count()
     }
 
-    /// The nodes of a body among those of all bodies.
-    pub fn nodes(&self, body: usize) -> Range<usize> {
+    /// The points of a body among those of all bodies: its nodes, then middles of edges of its curved faces.
+    pub fn points(&self, body: usize) -> Range<usize> {
         self.starts[body]..self.starts[body + 1]
     }
 
-    /// Number of nodes of all bodies.
-    pub fn node_count(&self) -> usize {
+    /// Number of points of all bodies.
+    pub fn point_count(&self) -> usize {
         self.starts[self.starts.len() - 1]
     }
 
-    /// Positions of all nodes, mm.
+    /// Positions of all points, mm.
     pub fn positions(&self, controls: &[f64]) -> Positions {
         let mut moved = vec![0.0; self.matrix.row_count()];
         self.matrix.multiply(controls, &mut moved);
@@ -83,7 +104,7 @@ impl ShapeMap {
             if !self.shaped[number] {
                 return Arc::clone(base);
             }
-            let nodes = base.iter().zip(&moved[self.nodes(number)]);
+            let nodes = base.iter().zip(&moved[self.points(number)]);
             let sum = |(base, moved): (&[f64; 3], &[f64; 3])| std::array::from_fn(|axis| base[axis] + moved[axis]);
             Arc::new(nodes.map(sum).collect())
         };
@@ -107,7 +128,7 @@ impl ShapeMap {
 
     /// Whether any node of a body moves along an axis with any control.
     pub fn moves_along(&self, body: usize, axis: usize) -> bool {
-        self.shaped[body] && self.nodes(body).any(|node| self.matrix.row(3 * node + axis).next().is_some())
+        self.shaped[body] && self.points(body).any(|node| self.matrix.row(3 * node + axis).next().is_some())
     }
 
     /// The sensitivities of the controls from those of the positions of all nodes.

@@ -107,7 +107,7 @@ impl Surface {
     }
 
     pub fn face(&self) -> Face<'_> {
-        Face { facets: &self.facets, positions: &self.positions }
+        Face { facets: &self.facets, positions: &self.positions, bends: &[] }
     }
 }
 

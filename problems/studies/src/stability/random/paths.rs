@@ -1,5 +1,6 @@
 //! The paths to a state of a random scene, and what is found of each.
 
+use super::MAX_RESIDUAL;
 use contact::WorkEstimate;
 use contact::contact_shape::ContactState;
 use contact::direct::{CompliantContact, DirectSolver, by_cone_programs};
@@ -112,7 +113,8 @@ impl Examined {
     }
 
     /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
-    /// its limit on work, and so is its residual; the study computes the residuals of the other paths.
+    /// its limit on work, which refuses what these programs leave with a residual above the tolerance of a state, and so
+    /// does this path; the study computes the residuals of the other paths.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
@@ -123,6 +125,9 @@ impl Examined {
         let (forces, _) = contact.dimensional(&unknowns);
         let normal: Vec<f64> = self.problem.boundary.points.iter().map(|point| forces[point.start].max(0.0)).collect();
         let residual = norm(&contact.residual(&unknowns, 0.0).0);
+        if residual.is_nan() || residual > MAX_RESIDUAL {
+            return Err(format!("{} cone programs ended with residual {residual:.1e}", found.count));
+        }
         let rows = self.problem.positions(&self.controls).and_then(|positions| self.problem.rows(&positions));
         let objective = objective(&normal, &rows.map_err(|error| error.to_string())?);
         Ok(Found {

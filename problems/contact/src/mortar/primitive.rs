@@ -1,0 +1,88 @@
+//! Surfaces that faces of machines lie on, and the projection onto them.
+
+use crate::scalar::Scalar;
+
+/// A surface without ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Primitive {
+    /// A plane through a point; the normal has unit length.
+    Plane { point: [f64; 3], normal: [f64; 3] },
+    /// A cylinder about a line; the axis has unit length.
+    Cylinder { point: [f64; 3], axis: [f64; 3], radius: f64 },
+    /// A cone about a line with the radius at the point, which grows by `slope` per length along the axis of unit length.
+    Cone { point: [f64; 3], axis: [f64; 3], radius: f64, slope: f64 },
+    /// A sphere.
+    Sphere { point: [f64; 3], radius: f64 },
+}
+
+fn dot<T: Scalar>(a: [T; 3], b: [T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl Primitive {
+    /// From the surface to a place, along the normal there: positive outside.
+    pub fn distance(&self, place: [f64; 3]) -> f64 {
+        self.parts(place).0
+    }
+
+    /// The point of the surface next to a place.
+    pub fn project<T: Scalar>(&self, place: [T; 3]) -> [T; 3] {
+        let (distance, normal) = self.parts(place);
+        std::array::from_fn(|axis| place[axis] - distance * normal[axis])
+    }
+
+    /// Signed distance and unit normal.
+    fn parts<T: Scalar>(&self, place: [T; 3]) -> (T, [T; 3]) {
+        let lifted = |vector: [f64; 3]| vector.map(T::constant);
+        let from = |point: [f64; 3]| -> [T; 3] { std::array::from_fn(|axis| place[axis] - T::constant(point[axis])) };
+        let across = |point: [f64; 3], axis: [f64; 3]| {
+            let (from, axis) = (from(point), lifted(axis));
+            let along = dot(from, axis);
+            let rest: [T; 3] = std::array::from_fn(|k| from[k] - along * axis[k]);
+            let length = dot(rest, rest).sqrt();
+            (along, length, rest.map(|x| x / length))
+        };
+        match *self {
+            Self::Plane { point, normal } => (dot(from(point), lifted(normal)), lifted(normal)),
+            Self::Cylinder { point, axis, radius } => {
+                let (_, length, radial) = across(point, axis);
+                (length - T::constant(radius), radial)
+            }
+            Self::Cone { point, axis, radius, slope } => {
+                let (along, length, radial) = across(point, axis);
+                let cosine = T::constant(1.0 / (1.0 + slope * slope).sqrt());
+                let slope = T::constant(slope);
+                let distance = (length - T::constant(radius) - slope * along) * cosine;
+                (distance, std::array::from_fn(|k| (radial[k] - slope * T::constant(axis[k])) * cosine))
+            }
+            Self::Sphere { point, radius } => {
+                let from = from(point);
+                let length = dot(from, from).sqrt();
+                (length - T::constant(radius), from.map(|x| x / length))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projections_lie_on_the_surface_and_along_its_normal() {
+        let axis = [0.6, 0.0, 0.8];
+        let all = [
+            Primitive::Plane { point: [1.0, 2.0, 3.0], normal: axis },
+            Primitive::Cylinder { point: [1.0, 2.0, 3.0], axis, radius: 0.7 },
+            Primitive::Cone { point: [1.0, 2.0, 3.0], axis, radius: 0.7, slope: 0.2 },
+            Primitive::Sphere { point: [1.0, 2.0, 3.0], radius: 0.7 },
+        ];
+        for primitive in all {
+            let place = [1.9, 2.3, 2.9];
+            let foot = primitive.project(place);
+            assert!(primitive.distance(foot).abs() < 1e-14, "{primitive:?}");
+            let step: f64 = (0..3).map(|axis| (place[axis] - foot[axis]).powi(2)).sum();
+            assert!((step.sqrt() - primitive.distance(place).abs()).abs() < 1e-14, "{primitive:?}");
+        }
+    }
+}

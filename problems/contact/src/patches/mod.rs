@@ -1,0 +1,13 @@
+//! Curved faces behind meshes: middles of facet edges on the true surface, and the primitives that faces lie on.
+//!
+//! ```text
+//! Y(ξ) = Σ Q_k(ξ) X_k + r₀(ξ)      Q: six or eight functions of second degree,  r₀: primitive less patch, at the start
+//! ```
+//! A face is divided where facets meet at more than 30°, so that sharp edges stay sharp.
+
+mod bent_face;
+mod fit;
+mod quadric;
+mod smooth_parts;
+
+pub(crate) use bent_face::{BentFace, MiddlePoint};
