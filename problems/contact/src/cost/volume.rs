@@ -15,7 +15,7 @@ pub(crate) fn volume_slope(problem: &ContactProblem, controls: &[f64]) -> Vec<[f
     let mut slope = problem.no_sensitivities();
     for body in problem.map.shaped_bodies() {
         let own = problem.bodies[body].mesh.volume_derivative(&positions[body]);
-        slope[problem.map.points(body)][..own.len()].copy_from_slice(&own);
+        slope[problem.map.nodes(body)].copy_from_slice(&own);
     }
     slope
 }

@@ -125,7 +125,7 @@ impl ContactProblem {
 
     /// Number of entries of the displacements of all bodies: three per node, in the order of the scene.
     pub fn displacement_count(&self) -> usize {
-        3 * self.bodies.iter().map(|body| body.mesh.node_count()).sum::<usize>()
+        3 * self.map.node_count()
     }
 
     /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and, where J depends on it, ∂J/∂u over all bodies.
@@ -258,7 +258,7 @@ impl ContactProblem {
 
     /// The number of a node of a body among the points that shapes move: nodes and middles of edges of all bodies.
     pub fn node_number(&self, body: usize, node: u32) -> usize {
-        self.map.points(body).start + node as usize
+        self.map.number(body, node)
     }
 
     /// Sensitivities of zero of the positions of all points.
@@ -410,7 +410,7 @@ fn maps(scene: &Scene, bodies: &[Body], points: &[Vec<MiddlePoint>]) -> Result<V
     ) {
         (None, _) => {
             let base = body.mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
-            Ok(BodyMap { base, controls: 0, rows: Vec::new() })
+            Ok(BodyMap { base, middles: points.len(), controls: 0, rows: Vec::new() })
         }
         (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, points, |node| body.supported(node)),
         (Some(ShapeScene::Heights(heights)), Geometry::Block(block)) => {

@@ -108,11 +108,11 @@ mod tests {
         let radius = 3.0;
         let at = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
         let points: Vec<[f64; 3]> =
-            [-0.4, -0.2, 0.0, 0.2, 0.4].into_iter().flat_map(|s| [0.0, 0.5].map(|z| at(s, z))).collect();
+            [-0.4, -0.2, 0.0, 0.2, 0.4].into_iter().flat_map(|s| [-0.5, 0.0, 0.5].map(|z| at(s, z))).collect();
         let node = at(0.0, 0.0);
         let points: Vec<[f64; 3]> = points.into_iter().filter(|x| *x != node).collect();
         let fit = fitted_normal(node, [0.98, 0.198_997_487_421_324, 0.0], &points).expect("enough points");
-        assert!((fit.normal[0] - 1.0).abs() < 1e-12 && fit.residual < 1e-12, "{fit:?}");
+        assert!((fit.normal[0] - 1.0).abs() < 1e-10 && fit.residual < 1e-10, "{fit:?}");
         let found = middle([at(0.1, 0.0), at(0.5, 0.0)], [at(0.1, 0.0), at(0.5, 0.0)].map(|x| x.map(|y| y / radius)));
         let exact = at(0.3, 0.0);
         assert!((0..3).all(|axis| (found[axis] - exact[axis]).abs() < 1e-14), "{found:?}");

@@ -93,5 +93,5 @@ pub(crate) fn height_map(surface: &SplineSurface, block: &Block, face: ShapedFac
             [vec![], vec![], if share == 0.0 { vec![] } else { scaled.collect() }]
         })
     });
-    BodyMap { base: base.collect(), controls: surface.control_count(), rows: rows.collect() }
+    BodyMap { base: base.collect(), middles: 0, controls: surface.control_count(), rows: rows.collect() }
 }

@@ -251,7 +251,7 @@ impl LatticeShape {
             return Err(SceneError::out_of_range("lattice", "a box without such nodes", allowed));
         }
         let base = mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
-        Ok(BodyMap { base, controls: controls.len(), rows })
+        Ok(BodyMap { base, middles: points.len(), controls: controls.len(), rows })
     }
 
     /// The nodes of the region; none where all nodes in the box move.

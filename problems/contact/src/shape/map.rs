@@ -3,8 +3,8 @@
 //! ```text
 //! x(α) = x₀ + N α,     sensitivities of α = Nᵀ (sensitivities of x),     velocities x′ = N α′
 //! ```
-//! Points, nodes and then middles of edges, are counted through all bodies, in the order of the scene, and so are
-//! controls.
+//! Nodes are counted through all bodies, in the order of the scene, and so are controls; middles of edges of curved
+//! faces follow the nodes of all bodies.
 
 use crate::linear::csr::Csr;
 use crate::patches::MiddlePoint;
@@ -20,6 +20,8 @@ pub type Positions = Vec<Arc<Vec<[f64; 3]>>>;
 pub(crate) struct BodyMap {
     /// Positions for controls 0, mm.
     pub base: Vec<[f64; 3]>,
+    /// How many of them, the last ones, are middles of edges.
+    pub middles: usize,
     pub controls: usize,
     /// Rows of N as (control, value), three per node; none where no control moves the body.
     pub rows: Vec<Vec<(usize, f64)>>,
@@ -28,6 +30,7 @@ pub(crate) struct BodyMap {
 impl BodyMap {
     /// With middles of edges that move as the mean of their ends.
     pub(crate) fn with_middles(mut self, points: &[MiddlePoint]) -> Self {
+        self.middles += points.len();
         for point in points {
             let rows: [Vec<(usize, f64)>; 3] = std::array::from_fn(|axis| {
                 let mut sums = BTreeMap::new();
@@ -56,6 +59,8 @@ pub struct ShapeMap {
     base: Positions,
     /// First node of every body, then their number.
     starts: Vec<usize>,
+    /// First middle of every body, then the number of points.
+    first_middles: Vec<usize>,
     /// Whether any control moves a node of the body.
     shaped: Vec<bool>,
     /// N by rows: 3·node + component.
@@ -65,19 +70,26 @@ pub struct ShapeMap {
 impl ShapeMap {
     /// The map of some bodies.
     pub(crate) fn new(bodies: Vec<BodyMap>) -> Self {
-        let (mut starts, mut base, mut shaped, mut rows) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+        let (mut starts, mut base, mut shaped) = (vec![0], Vec::new(), Vec::new());
+        let (mut nodes, mut middles, mut first_middles) = (Vec::new(), Vec::new(), vec![0]);
         let mut controls = 0;
-        for body in bodies {
-            let count = body.base.len();
+        for mut body in bodies {
+            let count = body.base.len() - body.middles;
             starts.push(starts[starts.len() - 1] + count);
+            first_middles.push(first_middles[first_middles.len() - 1] + body.middles);
             shaped.push(body.rows.iter().any(|row| !row.is_empty()));
+            body.rows.resize(3 * body.base.len(), Vec::new());
             let moved = |row: Vec<(usize, f64)>| row.into_iter().map(|(own, value)| (controls + own, value)).collect();
-            rows.extend(body.rows.into_iter().map(moved));
-            rows.resize(3 * starts[starts.len() - 1], Vec::new());
+            let mut rows = body.rows.into_iter().map(moved);
+            nodes.extend(rows.by_ref().take(3 * count));
+            middles.extend(rows);
             base.push(Arc::new(body.base));
             controls += body.controls;
         }
-        Self { base, starts, shaped, matrix: Csr::from_rows(controls, rows) }
+        let last = starts[starts.len() - 1];
+        first_middles.iter_mut().for_each(|first| *first += last);
+        nodes.extend(middles);
+        Self { base, starts, first_middles, shaped, matrix: Csr::from_rows(controls, nodes) }
     }
 
     /// Number of controls.
@@ -85,14 +97,25 @@ impl ShapeMap {
         self.matrix.column_count()
     }
 
-    /// The points of a body among those of all bodies: its nodes, then middles of edges of its curved faces.
-    pub fn points(&self, body: usize) -> Range<usize> {
+    /// The nodes of a body among those of all bodies.
+    pub fn nodes(&self, body: usize) -> Range<usize> {
         self.starts[body]..self.starts[body + 1]
     }
 
-    /// Number of points of all bodies.
-    pub fn point_count(&self) -> usize {
+    /// Number of nodes of all bodies.
+    pub fn node_count(&self) -> usize {
         self.starts[self.starts.len() - 1]
+    }
+
+    /// Number of points of all bodies: nodes, then middles of edges.
+    pub fn point_count(&self) -> usize {
+        self.first_middles[self.first_middles.len() - 1]
+    }
+
+    /// The number of a node, or of a middle after the nodes, of a body among the points of all bodies.
+    pub fn number(&self, body: usize, node: u32) -> usize {
+        let (own, count) = (node as usize, self.nodes(body).len());
+        if own < count { self.starts[body] + own } else { self.first_middles[body] + own - count }
     }
 
     /// Positions of all points, mm.
@@ -104,9 +127,11 @@ impl ShapeMap {
             if !self.shaped[number] {
                 return Arc::clone(base);
             }
-            let nodes = base.iter().zip(&moved[self.points(number)]);
-            let sum = |(base, moved): (&[f64; 3], &[f64; 3])| std::array::from_fn(|axis| base[axis] + moved[axis]);
-            Arc::new(nodes.map(sum).collect())
+            let sum = |(node, base): (usize, &[f64; 3])| {
+                let moved = moved[self.number(number, node as u32)];
+                std::array::from_fn(|axis| base[axis] + moved[axis])
+            };
+            Arc::new(base.iter().enumerate().map(sum).collect())
         };
         self.base.iter().enumerate().map(of_body).collect()
     }
@@ -128,10 +153,10 @@ impl ShapeMap {
 
     /// Whether any node of a body moves along an axis with any control.
     pub fn moves_along(&self, body: usize, axis: usize) -> bool {
-        self.shaped[body] && self.points(body).any(|node| self.matrix.row(3 * node + axis).next().is_some())
+        self.shaped[body] && self.nodes(body).any(|node| self.matrix.row(3 * node + axis).next().is_some())
     }
 
-    /// The sensitivities of the controls from those of the positions of all nodes.
+    /// The sensitivities of the controls from those of the positions of all points, or of all nodes.
     pub fn pull_back(&self, sensitivities: &[[f64; 3]]) -> Vec<f64> {
         let mut controls = vec![0.0; self.control_count()];
         for (row, sensitivity) in sensitivities.as_flattened().iter().enumerate() {
@@ -153,7 +178,7 @@ impl ShapeMap {
 
     /// A row of N: how a component of the position of a node of a body depends on the controls.
     pub fn row(&self, body: usize, node: u32, axis: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.matrix.row(3 * (self.starts[body] + node as usize) + axis)
+        self.matrix.row(3 * self.number(body, node) + axis)
     }
 }
 

@@ -77,15 +77,18 @@ fn closed_form(force: f64) -> [f64; 2] {
     [3.0 * whole / (2.0 * PI * a * a), a]
 }
 
-/// The slave is the softer body with the coarser grid, which the product of modulus and width of the facets chooses.
-/// Found here: 0.3 % and 1.0 %; on grids of 16 : 24 cells 0.47 % and 0.61 %, with the other slave 2.0 % and 0.19 %.
+/// Errors of peak and radius on grids of 12 : 18, 16 : 24 and 24 : 36 cells, with the softer and coarser body as slave:
+/// −2.7 and −0.5 %, −2.2 and 0.7 %, −1.2 and 0.3 %; with the other slave 0.7 and −0.5 %, 0.2 and −0.1 %. A gap is a mean
+/// over the facets about its node, which lie closer together in the centre than beside it.
 #[test]
 fn two_elastic_bodies_have_the_pressure_and_the_radius_of_hertz() {
-    let [force, peak, radius] = measured(&scene([12, 18], 0, 0.0));
-    let [p0, a] = closed_form(force);
-    let errors = [peak / p0 - 1.0, radius / a - 1.0];
-    println!("p₀ off by {:.2} %, a by {:.2} % ({a:.2} mm)", 100.0 * errors[0], 100.0 * errors[1]);
-    assert!(errors.iter().all(|error| error.abs() < 0.02), "{errors:?}");
+    for (slave, allowed) in [(0, [0.03, 0.01]), (1, [0.01, 0.01])] {
+        let [force, peak, radius] = measured(&scene([12, 18], slave, 0.0));
+        let [p0, a] = closed_form(force);
+        let errors = [peak / p0 - 1.0, radius / a - 1.0];
+        println!("p₀ off by {:.2} %, a by {:.2} % ({a:.2} mm)", 100.0 * errors[0], 100.0 * errors[1]);
+        assert!(errors.iter().zip(allowed).all(|(error, allowed)| error.abs() < allowed), "{slave}: {errors:?}");
+    }
 }
 
 /// On grids of 16 : 24 cells against 32 : 32: peak 0.56 %, radius 0.84 %, force 0.45 %.

@@ -1,7 +1,7 @@
 //! Derivatives against differences, and both directions against each other.
 
 use super::super::derivative::NodeChange;
-use super::super::{Along, Mortar, MortarNode, NodeSensitivity};
+use super::super::{Along, Mortar, MortarNode, NodeSensitivity, Primitive};
 use super::surface::{Surface, mortar, noise};
 
 fn velocity(seed: usize, side: usize, node: u32) -> [f64; 3] {
@@ -9,19 +9,30 @@ fn velocity(seed: usize, side: usize, node: u32) -> [f64; 3] {
 }
 
 /// Surfaces that are curved, distorted and do not match, with facets of one or both kinds; the master overhangs or
-/// ends inside the slave.
+/// ends inside the slave. From kind 8 on, facets are of second degree.
 pub fn surfaces(kind: usize) -> [Surface; 2] {
     let curved = |surface: Surface| surface.moved(|_, [x, y, z]| [x, y, z + 0.2 * x * x - 0.15 * y * y + 0.1 * x * y]);
-    let end = if kind < 4 { [-0.13, 1.17, -0.07, 1.09] } else { [0.21, 0.83, -0.07, 0.71] };
+    let end = if kind % 8 < 4 { [-0.13, 1.17, -0.07, 1.09] } else { [0.21, 0.83, -0.07, 0.71] };
     let slave = curved(Surface::unit(3, 0.0, true)).shaken(0.03, 5 + kind);
     let master = curved(Surface::grid([4, 3], end, 0.05, false)).shaken(0.03, 300 + kind);
     let place = |surface: Surface| surface.turned([1.0, 0.4, 0.2], 0.4).shifted([2.0, 1.0, -3.0]);
-    match kind % 4 {
+    let pair = match kind % 4 {
         0 => [place(slave), place(master)],
         1 => [place(slave.triangles()), place(master)],
         2 => [place(slave), place(master.triangles())],
         _ => [place(slave.triangles()), place(master.triangles())],
+    };
+    let sphere = Primitive::Sphere { point: [2.5, 1.5, -8.0], radius: 5.1 };
+    let [slave, master] = pair;
+    match kind < 8 {
+        true => [slave, master],
+        false => [slave.bent(0.02, 41 + kind, Some(sphere)), master.bent(0.02, 77 + kind, Some(sphere))],
     }
+}
+
+/// Directions of projection that a kind of surfaces is for: facets of second degree have normals of their own.
+fn ways(kind: usize) -> &'static [Along] {
+    if kind < 8 { &[Along::X3, Along::Normals] } else { &[Along::Normals] }
 }
 
 pub fn moved(surfaces: &[Surface; 2], seed: usize, step: f64) -> [Surface; 2] {
@@ -37,15 +48,18 @@ pub fn moved(surfaces: &[Surface; 2], seed: usize, step: f64) -> [Surface; 2] {
 fn dense(mortar: &Mortar, masters: usize, changes: Option<&[NodeChange]>) -> Vec<f64> {
     let mut numbers = Vec::new();
     for (k, node) in mortar.nodes.iter().enumerate() {
-        let mut row = vec![0.0; masters + 4];
+        let mut row = vec![0.0; masters + 5];
         let weights: Vec<f64> = match changes {
             Some(changes) => changes[k].weights.clone(),
             None => node.weights.iter().map(|(_, w)| *w).collect(),
         };
         let (area, normal) = changes.map_or((node.area, node.normal), |changes| (changes[k].area, changes[k].normal));
-        row[..3].copy_from_slice(&normal);
         row[3] = area;
+        if node.covered > 1e-3 || !mortar.is_bent() {
+            row[..3].copy_from_slice(&normal);
+        }
         if node.covered > 1e-3 {
+            row[masters + 4] = changes.map_or(node.gap, |changes| changes[k].gap);
             node.weights.iter().zip(weights).for_each(|(&(j, _), w)| row[4 + j as usize] = w);
         }
         numbers.extend(row);
@@ -55,8 +69,8 @@ fn dense(mortar: &Mortar, masters: usize, changes: Option<&[NodeChange]>) -> Vec
 
 #[test]
 fn changes_agree_with_central_differences() {
-    for kind in 0..8 {
-        for along in [Along::X3, Along::Normals] {
+    for kind in 0..16 {
+        for &along in ways(kind) {
             let mut worst = 0.0_f64;
             let pair = surfaces(kind);
             let masters = pair[1].positions.len();
@@ -82,14 +96,15 @@ fn changes_agree_with_central_differences() {
 
 #[test]
 fn pull_back_is_the_transpose_of_changes() {
-    for kind in 0..8 {
-        for along in [Along::X3, Along::Normals] {
+    for kind in 0..16 {
+        for &along in ways(kind) {
             let pair = surfaces(kind);
             let coupled = mortar(&pair[0], &pair[1], along);
             let sensitivity = |k: usize, weights: usize| NodeSensitivity {
                 area: noise(31 + k),
                 weights: (0..weights).map(|w| noise(900 + 20 * k + w)).collect(),
                 normal: std::array::from_fn(|c| noise(5000 + 3 * k + c)),
+                gap: if kind < 8 || weights == 0 { 0.0 } else { noise(7000 + k) },
             };
             let nodes = coupled.nodes.iter().enumerate();
             let count = |node: &MortarNode| if node.covered > 1e-3 { node.weights.len() } else { 0 };
@@ -108,7 +123,7 @@ fn pull_back_is_the_transpose_of_changes() {
             });
             let forward: f64 = coupled.changes(&field).iter().zip(&own).map(|(change, own)| paired(change, own)).sum();
             // Facets of which only 1e-5 is covered lose digits.
-            let tolerance = if kind < 4 { 1e-12 } else { 1e-9 };
+            let tolerance = if kind % 8 < 4 { 1e-12 } else { 1e-9 };
             println!("{kind} {along:?}: transpose {:.1e}", (forward - reverse).abs() / largest);
             assert!((forward - reverse).abs() < tolerance * largest, "{kind} {along:?}: {forward} {reverse}");
             assert!(largest > 1e-3);
@@ -118,7 +133,10 @@ fn pull_back_is_the_transpose_of_changes() {
 
 fn paired(change: &NodeChange, own: &NodeSensitivity) -> f64 {
     let weights: f64 = change.weights.iter().zip(&own.weights).map(|(a, b)| a * b).sum();
-    weights + change.area * own.area + (0..3).map(|c| change.normal[c] * own.normal[c]).sum::<f64>()
+    weights
+        + change.area * own.area
+        + change.gap * own.gap
+        + (0..3).map(|c| change.normal[c] * own.normal[c]).sum::<f64>()
 }
 
 #[test]

@@ -1,12 +1,15 @@
 //! Surfaces for the tests.
 
-use super::super::{Along, Face, Facet, Mortar};
+use super::super::{Along, Bend, Face, Facet, Mortar, Primitive, Remainder};
+use std::collections::BTreeMap;
 
 /// A surface that owns its mesh.
 #[derive(Debug, Clone)]
 pub struct Surface {
     pub facets: Vec<Facet>,
+    /// Of nodes, then of middles of edges.
     pub positions: Vec<[f64; 3]>,
+    pub bends: Vec<Bend>,
 }
 
 /// A number in (−1, 1) that looks random.
@@ -34,7 +37,7 @@ impl Surface {
                 facets.push(Facet::new(&ring).expect("four corners"));
             }
         }
-        Self { facets, positions }
+        Self { facets, positions, bends: Vec::new() }
     }
 
     pub fn unit(n: usize, z: f64, up: bool) -> Self {
@@ -94,6 +97,29 @@ impl Surface {
         self.moved(|_, x| std::array::from_fn(|c| x[c] + by[c]))
     }
 
+    /// Facets of second degree whose middles lie off their chords by up to `size`; with a sphere as primitive or without.
+    pub fn bent(mut self, size: f64, seed: usize, primitive: Option<Primitive>) -> Self {
+        let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        for facet in self.facets.clone() {
+            let corners = facet.corners();
+            let (mut middles, mut start) = ([u32::MAX; 4], [[0.0; 3]; 8]);
+            for (edge, &a) in corners.iter().enumerate() {
+                let b = corners[(edge + 1) % corners.len()];
+                let [x, y] = [a, b].map(|node| self.positions[node as usize]);
+                middles[edge] = *known.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    let k = self.positions.len();
+                    let off = |c: usize| size * noise(seed + 3 * k + c);
+                    self.positions.push(std::array::from_fn(|c| 0.5 * (x[c] + y[c]) + off(c)));
+                    k as u32
+                });
+                start[edge] = x;
+                start[4 + edge] = self.positions[middles[edge] as usize];
+            }
+            self.bends.push(Bend { middles, remainder: primitive.map(|primitive| Remainder { primitive, start }) });
+        }
+        self
+    }
+
     /// Both surfaces in one.
     pub fn joined(mut self, other: Self) -> Self {
         let first = self.positions.len() as u32;
@@ -107,7 +133,7 @@ impl Surface {
     }
 
     pub fn face(&self) -> Face<'_> {
-        Face { facets: &self.facets, positions: &self.positions, bends: &[] }
+        Face { facets: &self.facets, positions: &self.positions, bends: &self.bends }
     }
 }
 

@@ -39,7 +39,7 @@ pub fn shape_derivative(model: &TornModel, shape: SolvedShape<'_>, adjoint: &Tor
         let displacements = [&shape.displacement.0[dofs.clone()], &adjoint.displacement.0[dofs]];
         let moves = |node: u32| map.moves(number, node);
         let sums = position_sensitivities(body, piece, &shape.positions[number], displacements, moves);
-        let first = map.points(number).start as f64;
+        let first = map.nodes(number).start as f64;
         sums.into_iter().flat_map(|(node, [x, y, z])| [first + f64::from(node), x, y, z]).collect()
     };
     let pieces = model.distribution.complete(model.subdomains.par_iter().enumerate().map(sums).collect());
