@@ -7,7 +7,8 @@ use crate::body::elasticity::{Formulation, Material};
 use crate::body::mesh::BlockFace;
 use crate::deformation::Deformation;
 use crate::equilibrium::{
-    ContactFacets, ContactForces, ContactProblem, ContactRows, ContactStatus, MAX_RESIDUAL, SolvedBody,
+    ContactFacets, ContactForces, ContactProblem, ContactRows, ContactStatus, FacetPressure, MAX_RESIDUAL, SolvedBody,
+    facet_pressures,
 };
 use crate::scene::{CounterSurface, Scene};
 use nalgebra::Vector3;
@@ -97,6 +98,7 @@ pub fn warnings(
     });
     locking(problem, &mut found);
     uncovered(problem, &mut found);
+    noise_of_facets(problem, (rows, forces), &mut found);
     deformation(bodies, &mut found);
     let facets = problem.contact_facets();
     obstacle(problem, bodies, (&facets, forces), &mut found);
@@ -132,6 +134,28 @@ fn uncovered(problem: &ContactProblem, found: &mut Vec<Warning>) {
             face.face
         );
         found.push(Warning { code: "overhanging-face", text });
+    }
+}
+
+/// Facets that decide a good part of the pressures.
+fn noise_of_facets(problem: &ContactProblem, (rows, forces): (&ContactRows, &ContactForces), found: &mut Vec<Warning>) {
+    for own in facet_pressures(problem, rows, forces).into_iter().filter(FacetPressure::is_noisy) {
+        let contact = &problem.scene.contacts[own.contact];
+        let names = std::iter::once(&contact.slave).chain(contact.master_face());
+        let names: Vec<String> =
+            names.map(|face| format!("\"{}\" of {}", face.face, problem.scene.bodies[face.body].name)).collect();
+        let (why, remedy) = match own.is_curved {
+            true => ("are known no better than their nodes tell", "finer meshes, or middle nodes on the surfaces"),
+            false => ("count as flat facets", "geometry = \"curved\" for this contact, or finer meshes"),
+        };
+        let text = format!(
+            "the faces {} {why}: that alone makes pressures uncertain by {:.3} MPa, where the mean of the closed nodes is \
+             {:.3} MPa (at most a fifth of it): {remedy}",
+            names.join(" and "),
+            own.noise,
+            own.mean
+        );
+        found.push(Warning { code: "facets", text });
     }
 }
 

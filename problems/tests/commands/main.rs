@@ -19,6 +19,7 @@ mod cases;
 mod certificates;
 mod compare;
 mod contact3d;
+mod curved_faces;
 mod examples;
 mod export;
 mod export_mesh;

@@ -7,6 +7,7 @@ use crate::body::mesh::{CellFace, Mesh, narrow, smallest_extent};
 use crate::equilibrium::cell_shapes::CellShapes;
 use crate::equilibrium::contact_moduli;
 use crate::equilibrium::contact_part::ContactPart;
+use crate::equilibrium::facet_noise::FacetNoise;
 use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows};
 use crate::error::{ContactError, SceneError};
@@ -39,6 +40,8 @@ pub struct ContactProblem {
     /// E* per contact node, MPa.
     pub(super) contact_moduli: Vec<f64>,
     shapes: Vec<CellShapes>,
+    /// What facets do to pressures, by contact; none where gaps are not those of two faces along their normals.
+    pub(super) facet_noise: Vec<Option<FacetNoise>>,
     /// The contact rows at the start.
     start_rows: ContactRows,
 }
@@ -69,9 +72,19 @@ impl ContactProblem {
         let shapes = shapes.collect();
         let start_rows = ContactRows { nodes: Vec::new(), pairs: Vec::new(), contact_count: 0 };
         let (bodies, map, geometry) = (Arc::from(bodies), Arc::new(map), ContactGeometry { parts });
-        let contact_moduli = Vec::new();
-        let mut problem =
-            Self { scene, bodies, boundary, geometry, map, admissible, contact_moduli, shapes, start_rows };
+        let (contact_moduli, facet_noise) = (Vec::new(), bent.noise);
+        let mut problem = Self {
+            scene,
+            bodies,
+            boundary,
+            geometry,
+            map,
+            admissible,
+            contact_moduli,
+            shapes,
+            facet_noise,
+            start_rows,
+        };
         problem.leave_out_held_nodes()?;
         problem.contact_moduli = contact_moduli::contact_moduli(&problem.bodies, &problem.boundary);
         Ok(problem)
@@ -363,18 +376,19 @@ struct BentFaces {
     contacts: Vec<Option<[BentFace; 2]>>,
     /// By body.
     points: Vec<Vec<MiddlePoint>>,
+    /// By contact.
+    noise: Vec<Option<FacetNoise>>,
 }
 
 /// Finds the middles of edges of all pairs of faces between which gaps are those of surfaces. Where nothing is bent, and
 /// no shape can bend it, flat facets are the surfaces.
 fn bent_faces(scene: &Scene, bodies: &[Body]) -> Result<BentFaces, SceneError> {
-    let mut all = BentFaces { contacts: Vec::new(), points: vec![Vec::new(); bodies.len()] };
+    let mut all = BentFaces { contacts: Vec::new(), points: vec![Vec::new(); bodies.len()], noise: Vec::new() };
     for (index, contact) in scene.contacts.iter().enumerate() {
-        let master = contact.master_face().filter(|_| {
-            contact.normal == NormalKind::Surface && !contact.is_tied() && contact.geometry == FaceGeometry::Curved
-        });
+        let master = contact.master_face().filter(|_| contact.normal == NormalKind::Surface && !contact.is_tied());
         let Some(master) = master else {
             all.contacts.push(None);
+            all.noise.push(None);
             continue;
         };
         let field = scene.contact_field(index);
@@ -388,9 +402,13 @@ fn bent_faces(scene: &Scene, bodies: &[Body]) -> Result<BentFaces, SceneError> {
             Ok(bent)
         };
         let both = [face("slave", &contact.slave)?, face("master", master)?];
+        let is_curved = contact.geometry == FaceGeometry::Curved;
+        let meshes = [contact.slave.body, master.body].map(|body| &*bodies[body].mesh);
+        let is_bent = both.iter().any(|face| face.is_bent);
+        all.noise.push(is_bent.then(|| FacetNoise::new(is_curved, meshes, &both)));
         let bodies = [contact.slave.body, master.body];
         let moves = bodies.iter().any(|&body| scene.bodies[body].shape.is_some());
-        if !moves && !both.iter().any(|face| face.is_bent) {
+        if !is_curved || (!moves && !is_bent) {
             all.contacts.push(None);
             continue;
         }

@@ -30,6 +30,8 @@ pub(crate) struct BentFace {
     pub bends: Vec<Bend>,
     /// Points that are no nodes, numbered after the nodes of the mesh and those of other faces.
     pub points: Vec<MiddlePoint>,
+    /// The number of the first of them.
+    next: u32,
     /// How far a facet may lie from the true surface, mm, as the fit shows it: the distance of its nodes from their
     /// primitive, or of the nodes around from their quadric.
     pub residuals: Vec<f64>,
@@ -60,8 +62,14 @@ impl BentFace {
         let normals: Vec<[f64; 3]> = facets.iter().map(normal).collect();
         let (part_of, count) = smooth_parts::smooth_parts(&facets, &normals);
         let mut bends = vec![None; facets.len()];
-        let mut this =
-            Self { bends: Vec::new(), points: Vec::new(), residuals: vec![0.0; facets.len()], is_bent: false, facets };
+        let mut this = Self {
+            bends: Vec::new(),
+            points: Vec::new(),
+            next,
+            residuals: vec![0.0; facets.len()],
+            is_bent: false,
+            facets,
+        };
         for part in 0..count {
             let own: Vec<usize> = (0..this.facets.len()).filter(|&facet| part_of[facet] == part).collect();
             let facets = own.iter().map(|&facet| (facet, this.facets[facet], nodes[facet].clone())).collect();
@@ -70,6 +78,21 @@ impl BentFace {
         }
         this.bends = bends.into_iter().flatten().collect();
         this
+    }
+
+    /// The places of its points.
+    pub(crate) fn own_points(&self) -> impl Iterator<Item = &[f64; 3]> {
+        self.points.iter().map(|point| &point.place)
+    }
+
+    /// The bends with points numbered from `first` on, as if there were no other face.
+    pub(crate) fn own_bends(&self, first: usize) -> Vec<Bend> {
+        let own = |number: u32| match number {
+            u32::MAX => number,
+            _ if number >= self.next => number - self.next + first as u32,
+            _ => number,
+        };
+        self.bends.iter().map(|bend| Bend { middles: bend.middles.map(own), ..*bend }).collect()
     }
 
     fn add(&mut self, part: &Part<'_>, next: u32, bends: &mut [Option<Bend>]) {
