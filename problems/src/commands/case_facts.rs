@@ -126,6 +126,11 @@ fn rows(
             let what = format!("reaction of {} at {}", body.body, support.face);
             facts.push(row(&what, "N", resultants.iter().map(force).collect()).detail());
         }
+        let held = |found: &Resultants| found.bodies[index].friction_of_held;
+        if resultants.iter().any(|found| held(found) > 0.0) {
+            let what = format!("friction on {} along held directions, in no sum, at most", body.body);
+            facts.push(row(&what, "N", resultants.iter().map(|found| held(found).into()).collect()).detail());
+        }
     }
     facts
 }

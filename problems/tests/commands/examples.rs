@@ -36,8 +36,8 @@ fn the_bracket_has_the_start_of_its_page() {
 #[test]
 fn the_roller_has_the_peaks_of_its_page() {
     let state = evaluated("roller");
-    close("objective", &state["objective"], 2_853.431_185_649_738);
-    for (case, peak) in state["cases"].as_array().unwrap().iter().zip([2101.14, 2339.43, 1144.54, 1426.72]) {
+    close("objective", &state["objective"], 2_846.174_007_000_656);
+    for (case, peak) in state["cases"].as_array().unwrap().iter().zip([2100.74, 2334.71, 1145.15, 1423.09]) {
         let found = case["peak_pressure"].as_f64().unwrap();
         assert!((found - peak).abs() < 0.0051, "{}: {found} instead of {peak}", case["name"]);
         assert!(case["residual"].as_f64() < Some(1e-9), "{}", case["residual"]);
@@ -48,12 +48,20 @@ fn the_roller_has_the_peaks_of_its_page() {
 #[test]
 fn the_taper_balances_the_force_that_presses_it() {
     let state = evaluated("taper");
-    close("objective", &state["objective"], 1_927.186_888_1);
-    close("peak", &state["peak_pressure"], 258.505_057_4);
+    close("objective", &state["objective"], 1_929.111_796_5);
+    close("peak", &state["peak_pressure"], 258.638_005_7);
     // Half the angle of the bore: half of 5°40′, and 2′ more.
     let half = (2.0_f64 + 52.0 / 60.0).to_radians();
     let force = 333.333_333_33 / (half.sin() + 0.15 * half.cos());
     let found = state["total_normal_force"].as_f64().unwrap();
     assert!((found / force - 1.0).abs() < 5e-3, "{found} instead of {force}");
-    close("normal force", &state["total_normal_force"], 1_672.988_909_8);
+    close("normal force", &state["total_normal_force"], 1_673.107_956_6);
+}
+
+/// Tetrahedra of both bodies do not match, and their middle nodes lie on the spheres.
+#[test]
+fn the_ball_in_its_socket_has_the_peak_of_its_scene() {
+    let state = evaluated("ball_socket");
+    close("objective", &state["objective"], 1.320_194_993_05e10);
+    close("peak", &state["peak_pressure"], 166.356_167_3);
 }

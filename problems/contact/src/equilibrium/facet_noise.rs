@@ -1,7 +1,7 @@
 //! How much of the pressures between two curved faces may be a work of their facets.
 //!
 //! ```text
-//! p_f = π E* s/(2 h),   warned of above 0.2 of the mean pressure of the closed nodes
+//! p_f = π E* s/(2 h)
 //! flat facets:  s = max |Δ − mean Δ| over the closed nodes and those beside them, which facets may keep open;
 //!               Δ: gap of surfaces less gap of facets
 //! surfaces:     s = the largest distance of a patch from the true surface, as the fit shows it
@@ -10,51 +10,26 @@
 
 use crate::body::mesh::Mesh;
 use crate::equilibrium::contact_part::{COVERED, NO_WEIGHT};
-use crate::equilibrium::{ContactForces, ContactProblem, ContactRows, ContactStatus};
 use crate::mortar::vector::{length, plus};
 use crate::mortar::{Along, Bend, Face, Mortar, MortarNode};
 use crate::patches::BentFace;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Share of the mean pressure from which the noise of facets is no small thing. Pressures that are wrong by a quarter
-/// and more have 0.9 to 274 of it, right ones at most 0.105.
-const NOISY: f64 = 0.2;
-
-/// A patch of one ring of facets lies nearer to its surface than one of two rings, whose residual a fit shows: errors of
-/// second-degree surfaces grow with the cube of their extent.
+/// A patch over one ring of facets lies nearer to its surface than one over two rings, whose residual a fit shows:
+/// errors of surfaces of second degree grow with the cube of their extent.
 const ONE_RING: f64 = 0.125;
 
 /// What is known about the faces of a contact at the shape of the meshes.
 #[derive(Debug, Clone)]
 pub(crate) struct FacetNoise {
     /// Whether gaps are those of surfaces.
-    is_curved: bool,
+    pub(crate) is_curved: bool,
     /// By slave node, mm: Δ of flat facets, or the distance of patches on both sides from the true surface.
     by_node: BTreeMap<u32, f64>,
     /// The nodes of all facets about every slave node.
     beside: BTreeMap<u32, BTreeSet<u32>>,
     /// h, mm.
-    width: f64,
-}
-
-/// The noise of pressures of a contact of a state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FacetPressure {
-    /// The contact, by its place in the scene.
-    pub contact: usize,
-    /// Whether gaps are those of surfaces, not of flat facets.
-    pub is_curved: bool,
-    /// p_f, MPa.
-    pub noise: f64,
-    /// Mean pressure of the closed nodes, MPa.
-    pub mean: f64,
-}
-
-impl FacetPressure {
-    /// Whether the noise is too large a share of the mean pressure.
-    pub fn is_noisy(&self) -> bool {
-        self.noise > NOISY * self.mean
-    }
+    pub(crate) width: f64,
 }
 
 impl FacetNoise {
@@ -106,7 +81,7 @@ impl FacetNoise {
     }
 
     /// s over some closed nodes, mm.
-    fn size(&self, closed: &[u32]) -> f64 {
+    pub(crate) fn size(&self, closed: &[u32]) -> f64 {
         if self.is_curved {
             return closed.iter().filter_map(|node| self.by_node.get(node)).fold(0.0, |largest, own| largest.max(*own));
         }
@@ -140,23 +115,4 @@ fn mean_edge(mesh: &Mesh, face: &BentFace) -> f64 {
         }
     }
     sum / f64::from(count.max(1))
-}
-
-/// The noise of the pressures of every contact between curved faces at a state.
-pub fn facet_pressures(problem: &ContactProblem, rows: &ContactRows, forces: &ContactForces) -> Vec<FacetPressure> {
-    let of_contact = |(contact, noise): (usize, &Option<FacetNoise>)| {
-        let noise: &FacetNoise = noise.as_ref()?;
-        let range = problem.boundary.of_contact(contact);
-        let is_closed = |index: &usize| forces.status.get(*index).is_some_and(|s| *s != ContactStatus::Open);
-        let closed: Vec<usize> = range.filter(is_closed).collect();
-        let nodes: Vec<u32> = closed.iter().map(|&index| problem.boundary.points[index].node).collect();
-        let [force, area] = closed
-            .iter()
-            .fold([0.0; 2], |[force, area], &index| [force + forces.normal[index], area + rows.nodes[index].area]);
-        let modulus = closed.iter().map(|&index| problem.contact_moduli[index]).fold(0.0, f64::max);
-        let noise_pressure = 0.5 * std::f64::consts::PI * modulus * noise.size(&nodes) / noise.width;
-        let mean = if area > 0.0 { force / area } else { 0.0 };
-        Some(FacetPressure { contact, is_curved: noise.is_curved, noise: noise_pressure, mean })
-    };
-    problem.facet_noise.iter().enumerate().filter_map(of_contact).collect()
 }

@@ -1,6 +1,7 @@
 //! Unilateral contact with Coulomb friction: boundary, rows of a shape, law, rigid motions, certificates, problem and
 //! state.
 
+mod bent_faces;
 mod boundary;
 mod cell_shapes;
 pub(crate) mod certificate;
@@ -11,6 +12,7 @@ pub(crate) mod contact_part;
 mod contact_solver;
 pub(crate) mod diagnosis;
 mod facet_noise;
+mod facet_pressures;
 mod facets;
 pub(crate) mod law;
 pub(crate) mod modes;
@@ -35,7 +37,7 @@ pub(crate) use configuration::ForceUnit;
 pub use contact_geometry::ContactGeometry;
 pub use contact_solver::{ContactSolver, Sensitivities, Tangents, TangentsOf};
 pub use diagnosis::Diagnosis;
-pub use facet_noise::{FacetPressure, facet_pressures};
+pub use facet_pressures::{FacetPressure, facet_pressures};
 pub use facets::ContactFacets;
 pub use node_rows::{NodeRows, RowChange, RowSensitivities};
 pub use preview::{BodyPreview, Preview};

@@ -9,7 +9,7 @@
 
 use crate::body::Body;
 use crate::body::loads::nodal_forces;
-use crate::equilibrium::{ContactForces, ContactProblem, ContactRows, SolvedBody};
+use crate::equilibrium::{ContactForces, ContactPoint, ContactProblem, ContactRows, NodeRows, SolvedBody};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -31,6 +31,9 @@ pub struct BodyResultants {
     pub loads: [f64; 3],
     /// Of the contact forces on the body, N.
     pub contact: [f64; 3],
+    /// Σ 𝓕 λ_N over its contact nodes that supports hold in a tangential direction, N: at most so much friction along
+    /// these directions is in neither the contact forces nor the reactions, because such nodes have no row for it.
+    pub friction_of_held: f64,
     /// Reactions of its supports, in the order of the scene.
     pub supports: Vec<SupportReaction>,
 }
@@ -118,6 +121,7 @@ fn of_body(
             add(&mut rest[end as usize], 0.5, tied);
         }
     }
+    let friction_of_held = friction_of_held(problem, number, contact);
     let supports = &problem.scene.bodies[number].supports;
     let reaction = |face: &String| SupportReaction { face: face.clone(), force: [0.0; 3] };
     let mut supports: Vec<SupportReaction> = supports.iter().map(|support| reaction(&support.face)).collect();
@@ -127,7 +131,7 @@ fn of_body(
             add(&mut supports[support].force, share, direction);
         }
     }
-    BodyResultants { body: body.name.clone(), loads, contact: contacts, supports }
+    BodyResultants { body: body.name.clone(), loads, contact: contacts, friction_of_held, supports }
 }
 
 /// K u per node, N.
@@ -167,6 +171,16 @@ fn contact_forces<'a>(
         let own = sides.filter(move |(side, weight)| side.body == number && **weight != 0.0);
         own.map(move |(side, weight)| (side.node, force.map(|force| -weight * force)))
     })
+}
+
+/// The slip bounds of the contact nodes of a body that supports hold in a tangential direction, N.
+fn friction_of_held(problem: &ContactProblem, number: usize, (rows, forces): (&ContactRows, &ContactForces)) -> f64 {
+    let nodes = problem.boundary.contact_points().iter().zip(&rows.nodes).zip(&forces.normal);
+    let is_held = |((point, node), _): &((&ContactPoint, &NodeRows), &f64)| {
+        let takes_part = point.body == number || point.sides.iter().any(|side| side.body == number);
+        takes_part && point.free.len() < 3 && node.is_covered
+    };
+    nodes.filter(is_held).map(|((point, _), force)| point.friction * force.max(0.0)).fold(0.0, |sum, own| sum + own)
 }
 
 fn add(sum: &mut [f64; 3], factor: f64, vector: [f64; 3]) {

@@ -154,7 +154,8 @@ impl Mortar {
 
     /// Add the derivatives of a function of area, weights and normals by the positions of the nodes that move, given
     /// its derivatives `own` by those numbers (one entry per entry of `nodes`). `moves` and `add` name the nodes by
-    /// side: 0 for the slave surface, 1 for the master surface. Each node is added at most once per side: nodes ascending, then middles.
+    /// side: 0 for the slave surface, 1 for the master surface. Each node is added at most once per side: nodes
+    /// ascending, then middles.
     pub fn pull_back(
         &self,
         own: &[NodeSensitivity],

@@ -9,7 +9,7 @@ pub enum Primitive {
     Plane { point: [f64; 3], normal: [f64; 3] },
     /// A cylinder about a line; the axis has unit length.
     Cylinder { point: [f64; 3], axis: [f64; 3], radius: f64 },
-    /// A cone about a line with the radius at the point, which grows by `slope` per length along the axis of unit length.
+    /// A cone about a line: its radius at the point grows by `slope` per length along the axis of unit length.
     Cone { point: [f64; 3], axis: [f64; 3], radius: f64, slope: f64 },
     /// A sphere.
     Sphere { point: [f64; 3], radius: f64 },

@@ -72,8 +72,8 @@ pub struct ContactScene {
     /// How far the bodies are pressed into each other before loading, along the normals of the contact nodes, mm: every
     /// gap is smaller by it. Negative: a clearance.
     pub interference: f64,
-    /// The gap at the start, mm, whatever the meshes say: later changes of the shape count. Negative: the bodies overlap
-    /// by it. None: the faces tell the gaps. Between bodies only, and not with an interference.
+    /// The gap at the start, mm, whatever the meshes say: later changes of the shape count. Negative: the bodies
+    /// overlap by it. None: the faces tell the gaps. Between bodies only, and not with an interference.
     pub clearance: Option<f64>,
     /// Which surfaces the gaps between two bodies are measured between.
     pub geometry: FaceGeometry,

@@ -78,8 +78,8 @@ fn closed_form(force: f64) -> [f64; 2] {
 }
 
 /// Errors of peak and radius on grids of 12 : 18, 16 : 24 and 24 : 36 cells, with the softer and coarser body as slave:
-/// −2.7 and −0.5 %, −2.2 and 0.7 %, −1.2 and 0.3 %; with the other slave 0.7 and −0.5 %, 0.2 and −0.1 %. A gap is a mean
-/// over the facets about its node, which lie closer together in the centre than beside it.
+/// −2.7 and −0.5 %, −2.2 and 0.7 %, −1.2 and 0.3 %; with the other slave 0.7 and −0.5 %, 0.2 and −0.1 %. A gap is a
+/// mean over the facets about its node, which are smaller in the centre than beside it.
 #[test]
 fn two_elastic_bodies_have_the_pressure_and_the_radius_of_hertz() {
     for (slave, allowed) in [(0, [0.03, 0.01]), (1, [0.01, 0.01])] {

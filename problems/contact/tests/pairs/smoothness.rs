@@ -68,8 +68,8 @@ fn largest_jump(distortion: f64, slave: usize) -> f64 {
     let looks = |from: f64, width: f64, steps: usize| -> Vec<Slope> {
         (0..=steps).map(|step| slope(&objective, from + width * step as f64)).collect()
     };
-    // At 0 and ±1 the boundary of the small body passes edges of facets of the large one, whose dual bases over the part
-    // that is left change at once: only away from there is the large body covered all around its closed nodes.
+    // At 0 and ±1 the boundary of the small body passes edges of facets of the large one, whose dual bases over the
+    // part that is left change at once: only away from there is the large body covered all around its closed nodes.
     let (first, length) = if slave == 0 { (0.053, 0.9) } else { (-1.103, 2.2) };
     let width = length / STEPS as f64;
     let coarse = looks(first, width, STEPS);

@@ -43,7 +43,7 @@ fn the_seat_of_the_bracket_is_proved() {
 
 #[test]
 fn the_crown_of_the_roller_is_proved() {
-    reaches("roller", 2597.905, 36);
+    reaches("roller", 2593.454, 36);
 }
 
 /// The objective of the taper is a squared deviation near 0, of which few digits are of use.
@@ -54,6 +54,33 @@ fn the_profile_of_the_taper_is_proved() {
         Value::Array(ends) => ends.last().and_then(Value::as_f64).unwrap(),
         value => value.as_f64().unwrap(),
     });
-    assert!((found[0] - 0.2147).abs() < 0.01 && (found[1] - 41.45).abs() < 0.1, "{found:?}");
+    assert!((found[0] - 0.2038).abs() < 0.01 && (found[1] - 41.15).abs() < 0.1, "{found:?}");
     assert!(run["evaluations"].as_u64() <= Some(40), "{}", run["evaluations"]);
+}
+
+/// The optimum of one pair of meshes is evaluated on a finer pair: peak 1.9 %, Θ 4.1 %.
+#[test]
+fn the_seat_of_the_ball_is_proved_and_holds_on_finer_meshes() {
+    let run = optimized("ball_socket");
+    assert!(run["evaluations"].as_u64() <= Some(20), "{}", run["evaluations"]);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let scratch = testset::kit::scratch();
+    let controls = scratch.path().join("controls.json");
+    std::fs::write(&controls, run["controls"].to_string()).unwrap();
+    let mesh = |body: usize, name: &str| {
+        let file = root.join(format!("tests/data/curved/fine_{name}.msh")).canonicalize().unwrap();
+        format!("body[{body}].mesh=\"{}\"", file.display())
+    };
+    let path = root.join("scenes/ball_socket.toml");
+    let controls = controls.display().to_string();
+    let (ball, socket) = (mesh(0, "ball"), mesh(1, "socket"));
+    let words = ["contact3d", "evaluate", "--json", "--controls", &controls, "--set", &ball, "--set", &socket];
+    let arguments = Arguments::try_parse_from(words).unwrap();
+    let open = || Ok((SceneFile::read(&path)?, Some(path.clone())));
+    let fine: Value = serde_json::from_str(&execute(open, &arguments).unwrap()).unwrap();
+    for name in ["objective", "peak_pressure"] {
+        let last = |value: &Value| value.as_array().map_or_else(|| value.as_f64(), |ends| ends.last()?.as_f64());
+        let [coarse, fine] = [&run[name], &fine[name]].map(|value| last(value).unwrap());
+        assert!((fine / coarse - 1.0).abs() < 0.05, "{name}: {coarse} {fine}");
+    }
 }

@@ -97,7 +97,7 @@ impl Surface {
         self.moved(|_, x| std::array::from_fn(|c| x[c] + by[c]))
     }
 
-    /// Facets of second degree whose middles lie off their chords by up to `size`; with a sphere as primitive or without.
+    /// Facets of second degree whose middles lie off their chords by up to `size`, with a primitive or without.
     pub fn bent(mut self, size: f64, seed: usize, primitive: Option<Primitive>) -> Self {
         let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         for facet in self.facets.clone() {

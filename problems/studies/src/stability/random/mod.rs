@@ -5,7 +5,7 @@ mod scenes;
 
 use crate::markdown;
 use contact::contact_shape::SolverKind;
-use paths::{Examined, Found, PathResult};
+use paths::{Examined, Found, MAX_RESIDUAL, PathResult};
 use rayon::prelude::*;
 use scene_file::{Case, SceneFile};
 use scenes::Family;
@@ -14,8 +14,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
-/// Largest residual of a state.
-const MAX_RESIDUAL: f64 = 1e-8;
 /// Relative difference of Θ up to which two paths agree.
 const MAX_DIFFERENCE: f64 = 1e-6;
 /// Two paths may differ by this many times the effect that the rounding of the heights has on Θ.

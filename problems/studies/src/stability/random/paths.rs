@@ -1,6 +1,5 @@
 //! The paths to a state of a random scene, and what is found of each.
 
-use super::MAX_RESIDUAL;
 use contact::WorkEstimate;
 use contact::contact_shape::ContactState;
 use contact::direct::{CompliantContact, DirectSolver, by_cone_programs};
@@ -10,6 +9,9 @@ use contact::linear::vector::norm;
 use contact::solvers::{AnySolver, Processes, SolverKind, SolverPlan};
 use scene_file::Case;
 use std::sync::Arc;
+
+/// Largest residual of a state.
+pub(super) const MAX_RESIDUAL: f64 = 1e-8;
 
 const EXPONENT: i32 = 4;
 /// Share of the load below which contact forces are rounding.
@@ -113,8 +115,8 @@ impl Examined {
     }
 
     /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
-    /// its limit on work, which refuses what these programs leave with a residual above the tolerance of a state, and so
-    /// does this path; the study computes the residuals of the other paths.
+    /// its limit on work, which refuses what these programs leave with a residual above that of a state, and so does
+    /// this path; the study computes the residuals of the other paths.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
