@@ -16,7 +16,7 @@ impl DirectSolver {
         let bodies = self.problem.bodies.iter().enumerate();
         let solved = bodies.map(|(number, body)| SolvedBody {
             mesh: Arc::clone(&body.mesh),
-            positions: Arc::clone(&state.positions[number]),
+            positions: SolvedBody::nodes_of(&body.mesh, &state.positions[number]),
             displacement: body.extended(&self.patterns[number].piece, state.displacement(number)),
             gluing_defect: 0.0,
             subdomains: vec![number; body.mesh.cell_count()],

@@ -60,7 +60,7 @@ impl ContactProblem {
         let meshes: Vec<&Mesh> = bodies.iter().map(|body| &*body.mesh).collect();
         let admissible = AdmissibleSet::new(&scene, &meshes, &maps)?;
         let map = ShapeMap::new(maps);
-        let start = map.positions(&scene.start());
+        let start = map.points(&scene.start());
         check_start(&scene, &bodies, &start)?;
         let part =
             |index: usize| ContactPart::new((&scene, index), &bodies, (&map, bent.contacts[index].as_ref()), &start);
@@ -196,19 +196,19 @@ impl ContactProblem {
         self.shapes.iter().filter_map(CellShapes::flat_or_tall).reduce(f64::max)
     }
 
-    /// Positions of all nodes of a shape.
+    /// Positions of all points of a shape: per body its nodes, then the middles of edges of its curved faces.
     ///
     /// # Errors
     /// [`ContactError::InvertedElement`].
     pub fn positions(&self, controls: &[f64]) -> Result<Positions, ContactError> {
-        let positions = self.map.positions(controls);
+        let positions = self.map.points(controls);
         self.map.shaped_bodies().try_for_each(|body| check_cells(&self.bodies[body], &positions[body]))?;
         Ok(positions)
     }
 
-    /// Positions of all nodes at the start of the scene.
+    /// Positions of all points at the start of the scene.
     pub fn start_positions(&self) -> Positions {
-        self.map.positions(&self.scene.start())
+        self.map.points(&self.scene.start())
     }
 
     /// The contact rows of a shape.

@@ -118,8 +118,17 @@ impl ShapeMap {
         if own < count { self.starts[body] + own } else { self.first_middles[body] + own - count }
     }
 
-    /// Positions of all points, mm.
+    /// Positions of all nodes, mm.
     pub fn positions(&self, controls: &[f64]) -> Positions {
+        let nodes = |(body, points): (usize, Arc<Vec<[f64; 3]>>)| match self.nodes(body).len() {
+            count if count == points.len() => points,
+            count => Arc::new(points[..count].to_vec()),
+        };
+        self.points(controls).into_iter().enumerate().map(nodes).collect()
+    }
+
+    /// Positions of all points, mm: per body its nodes, then the middles of edges of its curved faces.
+    pub(crate) fn points(&self, controls: &[f64]) -> Positions {
         let mut moved = vec![0.0; self.matrix.row_count()];
         self.matrix.multiply(controls, &mut moved);
         let moved = moved.as_chunks::<3>().0;

@@ -19,12 +19,13 @@ impl LookedCase {
     /// # Errors
     /// [`Failure`] for controls without a shape.
     pub fn new(name: &str, problem: ContactProblem, controls: &[f64]) -> Result<Self, Failure> {
-        let positions = problem.positions(controls).map_err(Failure::computation)?;
-        let rows = match positions == problem.start_positions() {
+        let points = problem.positions(controls).map_err(Failure::computation)?;
+        let rows = match points == problem.start_positions() {
             true => problem.start_rows().clone(),
-            false => problem.rows(&positions).map_err(Failure::computation)?,
+            false => problem.rows(&points).map_err(Failure::computation)?,
         };
-        let preview = problem.preview_at(&positions, &rows);
+        let preview = problem.preview_at(&points, &rows);
+        let positions = problem.map.positions(controls);
         Ok(Self { name: name.to_owned(), problem, positions, rows, preview })
     }
 }

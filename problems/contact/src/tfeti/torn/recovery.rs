@@ -78,7 +78,7 @@ fn whole_body(model: &TornModel, number: usize, positions: &Positions, torn: &[f
     }
     SolvedBody {
         mesh: Arc::clone(&body.mesh),
-        positions: Arc::clone(&positions[number]),
+        positions: SolvedBody::nodes_of(&body.mesh, &positions[number]),
         displacement,
         gluing_defect: spread.into_iter().fold(0.0, f64::max).sqrt(),
         subdomains,
