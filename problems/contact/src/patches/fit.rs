@@ -177,6 +177,9 @@ fn moved(primitive: &Primitive, change: &[f64; 6], size: f64) -> (Primitive, usi
 mod tests {
     use super::*;
 
+    /// A surface over two parameters.
+    type Place<'a> = &'a dyn Fn(f64, f64) -> [f64; 3];
+
     /// Points about a turned axis, and normals of the facets between them.
     fn grid(place: impl Fn(f64, f64) -> [f64; 3]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         let at = |i: usize, j: usize| place(0.3 * i as f64, 0.5 * j as f64);
@@ -195,7 +198,7 @@ mod tests {
 
     #[test]
     fn primitives_are_found_in_their_order() {
-        let cases: [(&str, &dyn Fn(f64, f64) -> [f64; 3]); 4] = [
+        let cases: [(&str, Place<'_>); 4] = [
             ("Plane", &|s, t| turned([s, t, 0.0])),
             ("Cylinder", &|s, t| turned([5.0 * s.cos(), 5.0 * s.sin(), t])),
             ("Cone", &|s, t| turned([(5.0 + 0.2 * t) * s.cos(), (5.0 + 0.2 * t) * s.sin(), t])),
