@@ -29,19 +29,31 @@ impl FacetPressure {
 
 /// The noise of the pressures of every contact between curved faces at a state.
 pub fn facet_pressures(problem: &ContactProblem, rows: &ContactRows, forces: &ContactForces) -> Vec<FacetPressure> {
+    let is_closed = |index: usize| forces.status.get(index).is_some_and(|status| *status != ContactStatus::Open);
+    over_nodes(problem, is_closed, |closed| {
+        let force: f64 = closed.iter().map(|&index| forces.normal[index]).sum();
+        let area: f64 = closed.iter().map(|&index| rows.nodes[index].area).sum();
+        if area > 0.0 { force / area } else { 0.0 }
+    })
+}
+
+/// The noise that pressures of every contact between curved faces would have if all nodes closed; the mean is 0.
+pub fn facet_pressures_before_loading(problem: &ContactProblem) -> Vec<FacetPressure> {
+    over_nodes(problem, |_| true, |_| 0.0)
+}
+
+fn over_nodes(
+    problem: &ContactProblem,
+    counts: impl Fn(usize) -> bool,
+    mean: impl Fn(&[usize]) -> f64,
+) -> Vec<FacetPressure> {
     let of_contact = |(contact, noise): (usize, &Option<FacetNoise>)| {
         let noise: &FacetNoise = noise.as_ref()?;
-        let range = problem.boundary.of_contact(contact);
-        let is_closed = |index: &usize| forces.status.get(*index).is_some_and(|s| *s != ContactStatus::Open);
-        let closed: Vec<usize> = range.filter(is_closed).collect();
-        let nodes: Vec<u32> = closed.iter().map(|&index| problem.boundary.points[index].node).collect();
-        let [force, area] = closed
-            .iter()
-            .fold([0.0; 2], |[force, area], &index| [force + forces.normal[index], area + rows.nodes[index].area]);
-        let modulus = closed.iter().map(|&index| problem.contact_moduli[index]).fold(0.0, f64::max);
-        let noise_pressure = 0.5 * std::f64::consts::PI * modulus * noise.size(&nodes) / noise.width;
-        let mean = if area > 0.0 { force / area } else { 0.0 };
-        Some(FacetPressure { contact, is_curved: noise.is_curved, noise: noise_pressure, mean })
+        let own: Vec<usize> = problem.boundary.of_contact(contact).filter(|index| counts(*index)).collect();
+        let nodes: Vec<u32> = own.iter().map(|&index| problem.boundary.points[index].node).collect();
+        let modulus = own.iter().map(|&index| problem.contact_moduli[index]).fold(0.0, f64::max);
+        let pressure = 0.5 * std::f64::consts::PI * modulus * noise.size(&nodes) / noise.width;
+        Some(FacetPressure { contact, is_curved: noise.is_curved, noise: pressure, mean: mean(&own) })
     };
     problem.facet_noise.iter().enumerate().filter_map(of_contact).collect()
 }

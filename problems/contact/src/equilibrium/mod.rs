@@ -37,7 +37,7 @@ pub(crate) use configuration::ForceUnit;
 pub use contact_geometry::ContactGeometry;
 pub use contact_solver::{ContactSolver, Sensitivities, Tangents, TangentsOf};
 pub use diagnosis::Diagnosis;
-pub use facet_pressures::{FacetPressure, facet_pressures};
+pub use facet_pressures::{FacetPressure, facet_pressures, facet_pressures_before_loading};
 pub use facets::ContactFacets;
 pub use node_rows::{NodeRows, RowChange, RowSensitivities};
 pub use preview::{BodyPreview, Preview};

@@ -5,7 +5,7 @@ use crate::commands::numbers::number;
 use crate::commands::scene_words;
 use crate::commands::vectors::{dot, sum};
 use contact::body::mesh::smallest_extent;
-use contact::equilibrium::{ContactProblem, Positions, Preview};
+use contact::equilibrium::{ContactProblem, Positions, Preview, facet_pressures_before_loading};
 use contact::scene::{BodyFace, ContactScene, Held, Support};
 
 /// Part of a force along a direction, and of the size of a body, that is rounding.
@@ -18,6 +18,13 @@ pub fn hints(LookedCase { problem, positions, preview, .. }: &LookedCase) -> Vec
     let mut found = Vec::new();
     let size = positions.iter().map(|nodes| smallest_extent(nodes)).fold(f64::INFINITY, f64::min);
     found.extend(of_gaps(preview, ROUNDING * size));
+    let noise = facet_pressures_before_loading(problem).into_iter().filter(|own| !own.is_curved && own.noise > 0.0);
+    found.extend(noise.map(|own| {
+        let (face, noise) = (&problem.scene.contacts[own.contact].slave.face, number(own.noise));
+        format!(
+            "flat facets make pressures on \"{face}\" uncertain by up to {noise} MPa: leave out geometry = \"facets\""
+        )
+    }));
     let loads = preview.bodies.iter().map(|body| body.load.iter().map(|part| part.abs()).sum::<f64>()).sum::<f64>();
     let has_loads = problem.scene.bodies.iter().any(|body| !body.loads.is_empty());
     let is_driven = problem.scene.bodies.iter().flat_map(|body| &body.supports).any(prescribes_motion);
