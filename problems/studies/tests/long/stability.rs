@@ -24,7 +24,8 @@ fn random_scenes_have_states_that_the_default_finds() {
         [counts.scenes, counts.wrong, counts.panics, counts.beyond_cost, counts.disagreeing],
         [2000, 0, 0, 0, 0]
     );
-    assert_eq!([counts.solvable, counts.solved], [1785; 2]);
+    // On one plate of 1 : 1000, total FETI alone finds a state, after more work than the default spends.
+    assert_eq!([counts.solvable, counts.solved], [1786, 1785]);
     assert_eq!([counts.frictionless_solvable, counts.frictionless_solved], [663; 2]);
 }
 

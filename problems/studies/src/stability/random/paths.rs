@@ -89,10 +89,14 @@ impl Examined {
         let plan = SolverPlan::new(self.problem.scene.clone(), kind);
         let solver = Processes::alone().solver(plan).map_err(|error| error.to_string())?;
         let (state, contraction) = self.solved(&solver, controls).map_err(|error| error.to_string())?;
+        let condensed = self.residual(&state.forces, &state.rows);
+        // Where condensation itself finds no state, its matrices have lost the digits that would judge one: the
+        // certificate, from the displacements, does.
+        let is_judge = kind == SolverKind::Direct || condensed <= MAX_RESIDUAL || self.by(SolverKind::Direct).is_ok();
         Ok(Found {
             path: format!("{kind:?}, {:?}", state.solver),
             objective: objective(&state.forces.normal, &state.rows),
-            residual: self.residual(&state.forces, &state.rows),
+            residual: if is_judge { condensed } else { state.forces.residuals.largest() },
             operations: self.estimate.operations(state.solver, &state.work()),
             may_not_be_unique: contraction.is_some_and(|factor| factor >= 1.0),
         })
