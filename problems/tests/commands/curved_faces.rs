@@ -93,3 +93,21 @@ fn a_stated_clearance_is_the_gap_of_every_mesh() {
         }
     }
 }
+
+/// A middle node of the file far from its edge folds the facet, and is refused by name and place.
+#[test]
+fn a_middle_node_that_folds_a_facet_is_refused() {
+    let text = std::fs::read_to_string(folder().join("press_tet.toml")).unwrap();
+    let scene = SceneFile::parse(&text, "press_tet").and_then(|file| Case::new(&file, &folder())).unwrap().scene;
+    let mut scene = scene;
+    let contact::scene::Geometry::Mesh(geometry) = &mut scene.bodies[0].geometry else { panic!("a mesh") };
+    let mesh = (*geometry.mesh).clone();
+    let face = mesh.faces()["outer"][0];
+    let (nodes, corners) = mesh.face_with_corners(face);
+    let middle = mesh.nodes()[nodes[corners] as usize];
+    // Along the axis: far enough to fold the facet, and not so far as to turn a cell over.
+    let moved = |x: [f64; 3]| if x == middle { [x[0], x[1], x[2] + 0.8] } else { x };
+    geometry.mesh = std::sync::Arc::new(mesh.moved(moved));
+    let error = ContactProblem::new(scene).unwrap_err().to_string();
+    assert!(error.contains("slave") && error.contains("a middle node at"), "{error}");
+}

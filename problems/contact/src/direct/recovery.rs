@@ -4,6 +4,7 @@ use crate::direct::solver::{DirectSolver, DirectState};
 use crate::equilibrium::SolvedBody;
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
+use crate::shape::first_of;
 use std::sync::Arc;
 
 impl DirectSolver {
@@ -16,7 +17,7 @@ impl DirectSolver {
         let bodies = self.problem.bodies.iter().enumerate();
         let solved = bodies.map(|(number, body)| SolvedBody {
             mesh: Arc::clone(&body.mesh),
-            positions: SolvedBody::nodes_of(&body.mesh, &state.positions[number]),
+            positions: first_of(&state.positions[number], body.mesh.node_count()),
             displacement: body.extended(&self.patterns[number].piece, state.displacement(number)),
             gluing_defect: 0.0,
             subdomains: vec![number; body.mesh.cell_count()],

@@ -5,9 +5,10 @@ use crate::body::elasticity::facet::tributary_areas;
 use crate::body::mesh::{CellFace, bounding_box};
 use crate::equilibrium::pair_sides::possible_masters;
 use crate::error::SceneError;
-use crate::mortar::{Along, Bend, Face, Facet, Mortar, MortarNode};
+use crate::mortar::vector::dot;
+use crate::mortar::{Along, Face, Facet, Mortar, MortarNode, QuadraticFacet};
 use crate::names::find_face;
-use crate::patches::BentFace;
+use crate::patches::CurvedFace;
 use crate::scalar::Scalar;
 use crate::scene::{AreaKind, BodyFace, ContactScene, CounterSurface, Master, NormalKind, Scene};
 use crate::shape::ShapeMap;
@@ -58,7 +59,7 @@ pub(crate) struct Pair {
     /// Slave facets, then master facets.
     facets: [Vec<Facet>; 2],
     /// Middles of the edges of both; none for flat facets.
-    bends: [Vec<Bend>; 2],
+    quadratic_facets: [Vec<QuadraticFacet>; 2],
     along: Along,
     /// Whether normals along x₃ point downwards.
     is_downward: bool,
@@ -79,7 +80,7 @@ impl ContactPart {
     pub(crate) fn new(
         (scene, index): (&Scene, usize),
         bodies: &[Body],
-        (map, bent): (&ShapeMap, Option<&[BentFace; 2]>),
+        (map, curved): (&ShapeMap, Option<&[CurvedFace; 2]>),
         start: &[Arc<Vec<[f64; 3]>>],
     ) -> Result<Self, SceneError> {
         let (contact, field) = (&scene.contacts[index], scene.contact_field(index));
@@ -120,7 +121,7 @@ impl ContactPart {
                 };
                 this.areas_change = !this.is_fixed;
                 let faces = faces_of(&format!("{field}.master"), master, bodies)?;
-                this.pair_with((scene, contact, master), (&faces, bent), bodies, start);
+                this.pair_with((scene, contact, master), (&faces, curved), bodies, start);
                 let (names, allowed) = (
                     format!("\"{}\" and \"{}\"", contact.slave.face, master.face),
                     "two faces that lie opposite to each other",
@@ -135,15 +136,16 @@ impl ContactPart {
     fn pair_with(
         &mut self,
         (scene, contact, master): (&Scene, &ContactScene, &BodyFace),
-        (faces, bent): (&[CellFace], Option<&[BentFace; 2]>),
+        (faces, curved): (&[CellFace], Option<&[CurvedFace; 2]>),
         bodies: &[Body],
         start: &[Arc<Vec<[f64; 3]>>],
     ) {
         let facets = [mortar_facets(&bodies[self.slave], &self.faces), mortar_facets(&bodies[master.body], faces)];
         let along = if contact.normal == NormalKind::X3 { Along::X3 } else { Along::Normals };
-        let bends = bent.map_or_else(Default::default, |faces| [0, 1].map(|side| faces[side].bends.clone()));
+        let quadratic_facets =
+            curved.map_or_else(Default::default, |faces| [0, 1].map(|side| faces[side].quadratic_facets.clone()));
         let positions: [&[[f64; 3]]; 2] = [&start[self.slave], &start[master.body]];
-        let mortar = mortar(&facets, &bends, positions, along);
+        let mortar = mortar(&facets, &quadratic_facets, positions, along);
         let is_covered = |node: &&MortarNode| node.covered >= COVERED;
         let covered = || mortar.nodes.iter().filter(is_covered);
         self.uncovered = mortar.nodes.len() - covered().count();
@@ -171,7 +173,8 @@ impl ContactPart {
         let away = (0..3).map(|axis| (most[axis] - least[axis]).powi(2)).sum::<f64>().sqrt();
         let is_downward = along == Along::X3 && faces_down(&facets[0], &start[self.slave]);
         let start = Arc::new(mortar);
-        let mut pair = Pair { body: master.body, facets, bends, along, is_downward, away, offsets: Vec::new(), start };
+        let mut pair =
+            Pair { body: master.body, facets, quadratic_facets, along, is_downward, away, offsets: Vec::new(), start };
         if let Some(clearance) = contact.clearance {
             pair.offsets = pair.offsets_for(clearance, positions);
         }
@@ -251,21 +254,18 @@ impl Pair {
     pub(crate) fn mortar(&self, positions: [&[[f64; 3]]; 2], is_fixed: bool) -> Arc<Mortar> {
         match is_fixed {
             true => Arc::clone(&self.start),
-            false => Arc::new(mortar(&self.facets, &self.bends, positions, self.along)),
+            false => Arc::new(mortar(&self.facets, &self.quadratic_facets, positions, self.along)),
         }
     }
 
     /// What added to the gaps of the start gives a clearance. Nodes that nothing lies opposite to at the start have the
     /// mean of the others.
-    fn offsets_for(&self, clearance: f64, [slave, master]: [&[[f64; 3]]; 2]) -> Vec<f64> {
+    fn offsets_for(&self, clearance: f64, positions: [&[[f64; 3]]; 2]) -> Vec<f64> {
         let offset = |node: &MortarNode| {
-            let mut gap = node.gap;
-            if !self.start.is_bent() {
-                let x = slave[node.node as usize];
-                let other = |axis: usize| node.weights.iter().map(|(m, w)| w * master[*m as usize][axis]).sum::<f64>();
-                let normal = self.outward(node.normal);
-                gap = (0..3).map(|axis| normal[axis] * (other(axis) - x[axis])).sum();
-            }
+            let gap = match self.start.is_quadratic() {
+                true => node.gap,
+                false => dot(self.outward(node.normal), node.distance(positions)),
+            };
             (node.covered >= COVERED).then_some(clearance - gap)
         };
         let offsets: Vec<Option<f64>> = self.start.nodes.iter().map(offset).collect();
@@ -275,8 +275,14 @@ impl Pair {
     }
 }
 
-fn mortar(facets: &[Vec<Facet>; 2], bends: &[Vec<Bend>; 2], [slave, master]: [&[[f64; 3]]; 2], along: Along) -> Mortar {
-    let face = |side: usize, positions| Face { facets: &facets[side], positions, bends: &bends[side] };
+fn mortar(
+    facets: &[Vec<Facet>; 2],
+    quadratic_facets: &[Vec<QuadraticFacet>; 2],
+    [slave, master]: [&[[f64; 3]]; 2],
+    along: Along,
+) -> Mortar {
+    let face =
+        |side: usize, positions| Face { facets: &facets[side], positions, quadratic_facets: &quadratic_facets[side] };
     Mortar::new(face(0, slave), face(1, master), along)
 }
 

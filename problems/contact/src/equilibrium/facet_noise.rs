@@ -10,14 +10,10 @@
 
 use crate::body::mesh::Mesh;
 use crate::equilibrium::contact_part::{COVERED, NO_WEIGHT};
-use crate::mortar::vector::{length, plus};
-use crate::mortar::{Along, Bend, Face, Mortar, MortarNode};
-use crate::patches::BentFace;
+use crate::mortar::vector::{dot, length, plus};
+use crate::mortar::{Along, Face, Mortar, MortarNode, QuadraticFacet};
+use crate::patches::CurvedFace;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-
-/// Of a surface of third degree, z = c x³, a quadric over two rings of width h leaves 2/5 c (2h)³ = 3.2 c h³, and a patch
-/// over one facet max |t (t − 1/2) (t − 1)| c h³ = 0.048 c h³. The share is taken twice, for the error of the middles.
-const ONE_RING: f64 = 2.0 * 0.048 / 3.2;
 
 /// What is known about the faces of a contact at the shape of the meshes.
 #[derive(Debug, Clone)]
@@ -33,18 +29,18 @@ pub(crate) struct FacetNoise {
 }
 
 impl FacetNoise {
-    /// Compares the facets of two faces with the surfaces behind them.
-    pub(crate) fn new(is_curved: bool, meshes: [&Mesh; 2], faces: &[BentFace; 2]) -> Self {
+    /// Compares the facets of two faces, whose points are numbered after the nodes of their meshes, with the surfaces
+    /// behind them.
+    pub(crate) fn new(is_curved: bool, meshes: [&Mesh; 2], faces: &[CurvedFace; 2]) -> Self {
         let positions = [0, 1].map(|side| {
-            let points = faces[side].own_points();
-            meshes[side].nodes().iter().chain(points).copied().collect::<Vec<[f64; 3]>>()
+            let points = faces[side].points.iter().map(|point| point.place);
+            meshes[side].nodes().iter().copied().chain(points).collect::<Vec<[f64; 3]>>()
         });
-        let bends = [0, 1].map(|side| faces[side].own_bends(meshes[side].node_count()));
-        let mortar = |bends: [&[Bend]; 2]| {
+        let mortar = |quadratic_facets: [&[QuadraticFacet]; 2]| {
             let [slave, master] = [0, 1].map(|side| Face {
                 facets: &faces[side].facets,
                 positions: &positions[side],
-                bends: bends[side],
+                quadratic_facets: quadratic_facets[side],
             });
             Mortar::new(slave, master, Along::Normals)
         };
@@ -63,12 +59,9 @@ impl FacetNoise {
                 (node.node, at(&slave, node.node) + other.fold(0.0, f64::max))
             }));
         } else if !is_equal {
-            let curved = mortar([&bends[0], &bends[1]]);
+            let curved = mortar([&faces[0].quadratic_facets, &faces[1].quadratic_facets]);
             by_node.extend(covered().map(|(index, node)| {
-                let x = positions[0][node.node as usize];
-                let other =
-                    |axis: usize| node.weights.iter().map(|(m, w)| w * positions[1][*m as usize][axis]).sum::<f64>();
-                let gap: f64 = (0..3).map(|axis| node.normal[axis] * (other(axis) - x[axis])).sum();
+                let gap = dot(node.normal, node.distance([&positions[0], &positions[1]]));
                 (node.node, curved.nodes[index].gap - gap)
             }));
         }
@@ -93,19 +86,19 @@ impl FacetNoise {
 }
 
 /// The largest residual of the facets about every corner, mm.
-fn residuals(face: &BentFace) -> HashMap<u32, f64> {
+fn residuals(face: &CurvedFace) -> HashMap<u32, f64> {
     let mut largest = HashMap::new();
     for (facet, &residual) in face.facets.iter().zip(&face.residuals) {
         for &corner in facet.corners() {
             let own: &mut f64 = largest.entry(corner).or_default();
-            *own = own.max(ONE_RING * residual);
+            *own = own.max(residual);
         }
     }
     largest
 }
 
 /// The mean length of the edges of all facets of a face, mm.
-fn mean_edge(mesh: &Mesh, face: &BentFace) -> f64 {
+fn mean_edge(mesh: &Mesh, face: &CurvedFace) -> f64 {
     let x = |node: u32| mesh.nodes()[node as usize];
     let (mut sum, mut count) = (0.0, 0);
     for corners in face.facets.iter().map(|facet| facet.corners()) {

@@ -2,6 +2,8 @@
 
 use crate::equilibrium::facet_noise::FacetNoise;
 use crate::equilibrium::{ContactForces, ContactProblem, ContactRows, ContactStatus};
+use crate::patches::CurvedFace;
+use crate::scene::FaceGeometry;
 
 /// Share of the mean pressure from which the noise of facets is no small thing. Pressures that are wrong by a quarter
 /// and more have 0.9 to 274 of it, right ones at most 0.105.
@@ -47,13 +49,15 @@ fn over_nodes(
     counts: impl Fn(usize) -> bool,
     mean: impl Fn(&[usize]) -> f64,
 ) -> Vec<FacetPressure> {
-    let of_contact = |(contact, noise): (usize, &Option<FacetNoise>)| {
-        let noise: &FacetNoise = noise.as_ref()?;
-        let own: Vec<usize> = problem.boundary.of_contact(contact).filter(|index| counts(*index)).collect();
+    let of_contact = |(index, faces): (usize, &Option<[CurvedFace; 2]>)| {
+        let (faces, contact) = (faces.as_ref()?, &problem.scene.contacts[index]);
+        let meshes = [&contact.slave, contact.master_face()?].map(|face| &*problem.bodies[face.body].mesh);
+        let noise = FacetNoise::new(contact.geometry == FaceGeometry::Curved, meshes, faces);
+        let own: Vec<usize> = problem.boundary.of_contact(index).filter(|index| counts(*index)).collect();
         let nodes: Vec<u32> = own.iter().map(|&index| problem.boundary.points[index].node).collect();
         let modulus = own.iter().map(|&index| problem.contact_moduli[index]).fold(0.0, f64::max);
         let pressure = 0.5 * std::f64::consts::PI * modulus * noise.size(&nodes) / noise.width;
-        Some(FacetPressure { contact, is_curved: noise.is_curved, noise: pressure, mean: mean(&own) })
+        Some(FacetPressure { contact: index, is_curved: noise.is_curved, noise: pressure, mean: mean(&own) })
     };
-    problem.facet_noise.iter().enumerate().filter_map(of_contact).collect()
+    problem.curved_faces.iter().enumerate().filter_map(of_contact).collect()
 }

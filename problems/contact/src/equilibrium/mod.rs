@@ -1,7 +1,6 @@
 //! Unilateral contact with Coulomb friction: boundary, rows of a shape, law, rigid motions, certificates, problem and
 //! state.
 
-mod bent_faces;
 mod boundary;
 mod cell_shapes;
 pub(crate) mod certificate;
@@ -10,6 +9,7 @@ mod contact_geometry;
 mod contact_moduli;
 pub(crate) mod contact_part;
 mod contact_solver;
+mod curved_faces;
 pub(crate) mod diagnosis;
 mod facet_noise;
 mod facet_pressures;

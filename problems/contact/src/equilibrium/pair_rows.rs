@@ -78,7 +78,7 @@ impl PairRows {
             } else {
                 let imposed = point.imposed(&weights);
                 let offset = pair.offsets.get(index).copied().unwrap_or(0.0) - part.interference;
-                if mortar.is_bent() {
+                if mortar.is_quadratic() {
                     node.gap - dot(normal, imposed) + offset
                 } else {
                     let distance = distance(point, &weights, &positions);
@@ -102,7 +102,7 @@ impl PairRows {
         add: &mut impl FnMut(usize, u32, [f64; 3]),
     ) {
         for ((point, row), own) in points.iter().zip(rows).zip(sensitivities) {
-            if self.is_tied || own.gap == 0.0 || !row.is_covered || self.mortar.is_bent() {
+            if self.is_tied || own.gap == 0.0 || !row.is_covered || self.mortar.is_quadratic() {
                 continue;
             }
             for (side, weight) in point.sides.iter().zip(&row.weights).filter(|(_, weight)| **weight != 0.0) {
@@ -129,7 +129,7 @@ impl PairRows {
             }
             // The weights of the master nodes are those of the sides with the opposite sign.
             let weights = sides.iter().map(|&side| if side > 0 { -by_side[side] } else { 0.0 }).collect();
-            let gap = if self.is_tied || !self.mortar.is_bent() { 0.0 } else { own.gap };
+            let gap = if self.is_tied || !self.mortar.is_quadratic() { 0.0 } else { own.gap };
             of_nodes[*index] = NodeSensitivity { area: 0.0, weights, normal, gap };
         }
         self.add_mortar(&of_nodes, moves, add);
@@ -166,7 +166,8 @@ impl PairRows {
     /// The derivative of the gap by the normal, but for what it does in facets of second degree.
     fn by_normal(&self, point: &ContactPoint, row: &NodeRows) -> [f64; 3] {
         let imposed = point.imposed(&row.weights);
-        let distance = if self.mortar.is_bent() { [0.0; 3] } else { distance(point, &row.weights, &self.positions) };
+        let distance =
+            if self.mortar.is_quadratic() { [0.0; 3] } else { distance(point, &row.weights, &self.positions) };
         std::array::from_fn(|axis| distance[axis] - imposed[axis])
     }
 
@@ -177,7 +178,7 @@ impl PairRows {
         let place = |which: usize, node: u32| self.positions[which][node as usize];
         let of_side = |(number, side): (usize, &crate::equilibrium::Side)| {
             let moved = -dot(rest, side.prescribed);
-            match self.mortar.is_bent() {
+            match self.mortar.is_quadratic() {
                 true => moved,
                 false => moved - dot(row.normal, place(usize::from(number > 0), side.node)),
             }
@@ -198,7 +199,7 @@ impl PairRows {
             let moved = |side: &crate::equilibrium::Side| velocities.at(side.body, side.node, column);
             let sides_with_weights = point.sides.iter().zip(&row.weights).filter(|(_, weight)| **weight != 0.0);
             let mut gap: f64 = sides_with_weights.map(|(side, weight)| -weight * dot(row.normal, moved(side))).sum();
-            if self.mortar.is_bent() {
+            if self.mortar.is_quadratic() {
                 gap = 0.0;
             }
             let mut change =

@@ -4,16 +4,15 @@ use crate::body::Body;
 use crate::body::elasticity::{Formulation, Material};
 use crate::body::loads::nodal_forces;
 use crate::body::mesh::{CellFace, Mesh, smallest_extent};
-use crate::equilibrium::bent_faces::bent_faces;
 use crate::equilibrium::cell_shapes::CellShapes;
 use crate::equilibrium::contact_moduli;
 use crate::equilibrium::contact_part::ContactPart;
-use crate::equilibrium::facet_noise::FacetNoise;
+use crate::equilibrium::curved_faces::curved_faces;
 use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows};
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
-use crate::patches::MiddlePoint;
+use crate::patches::{CurvedFace, MiddlePoint};
 use crate::scene::{Geometry, Scene};
 use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap, ShapeScene, Velocities, height_map};
 use std::sync::Arc;
@@ -41,8 +40,8 @@ pub struct ContactProblem {
     /// E* per contact node, MPa.
     pub(super) contact_moduli: Vec<f64>,
     shapes: Vec<CellShapes>,
-    /// What facets do to pressures, by contact; none where gaps are not those of two faces along their normals.
-    pub(super) facet_noise: Vec<Option<FacetNoise>>,
+    /// Slave and master face by contact, where any of them is curved and gaps are along their normals.
+    pub(super) curved_faces: Vec<Option<[CurvedFace; 2]>>,
     /// The contact rows at the start.
     start_rows: ContactRows,
 }
@@ -55,15 +54,15 @@ impl ContactProblem {
     pub fn new(scene: Scene) -> Result<Self, SceneError> {
         scene.validate()?;
         let bodies = bodies(&scene)?;
-        let bent = bent_faces(&scene, &bodies)?;
-        let maps = maps(&scene, &bodies, &bent.points)?;
+        let curved = curved_faces(&scene, &bodies)?;
+        let maps = maps(&scene, &bodies, &curved.points)?;
         let meshes: Vec<&Mesh> = bodies.iter().map(|body| &*body.mesh).collect();
         let admissible = AdmissibleSet::new(&scene, &meshes, &maps)?;
         let map = ShapeMap::new(maps);
         let start = map.points(&scene.start());
         check_start(&scene, &bodies, &start)?;
         let part =
-            |index: usize| ContactPart::new((&scene, index), &bodies, (&map, bent.contacts[index].as_ref()), &start);
+            |index: usize| ContactPart::new((&scene, index), &bodies, (&map, curved.contacts[index].as_ref()), &start);
         let parts = (0..scene.contacts.len()).map(part).collect::<Result<Vec<_>, SceneError>>()?;
         let boundary = ContactBoundary::new(&scene, &bodies, &parts)?;
         let shapes = bodies.iter().zip(&start).enumerate().map(|(number, (body, positions))| {
@@ -73,7 +72,7 @@ impl ContactProblem {
         let shapes = shapes.collect();
         let start_rows = ContactRows { nodes: Vec::new(), pairs: Vec::new(), contact_count: 0 };
         let (bodies, map, geometry) = (Arc::from(bodies), Arc::new(map), ContactGeometry { parts });
-        let (contact_moduli, facet_noise) = (Vec::new(), bent.noise);
+        let (contact_moduli, curved_faces) = (Vec::new(), curved.alone);
         let mut problem = Self {
             scene,
             bodies,
@@ -83,7 +82,7 @@ impl ContactProblem {
             admissible,
             contact_moduli,
             shapes,
-            facet_noise,
+            curved_faces,
             start_rows,
         };
         problem.leave_out_held_nodes()?;

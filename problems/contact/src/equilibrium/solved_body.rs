@@ -22,14 +22,6 @@ pub struct SolvedBody {
 }
 
 impl SolvedBody {
-    /// The positions of the nodes of a mesh among those of the points of its body.
-    pub(crate) fn nodes_of(mesh: &Mesh, points: &Arc<Vec<[f64; 3]>>) -> Arc<Vec<[f64; 3]>> {
-        match mesh.node_count() {
-            count if count == points.len() => Arc::clone(points),
-            count => Arc::new(points[..count].to_vec()),
-        }
-    }
-
     /// Strain energy ½ uᵀK u, N·mm.
     pub fn strain_energy(&self, body: &Body) -> f64 {
         let energy = |cell: usize| {

@@ -5,15 +5,13 @@
 //! triangle: λ(2λ − 1), 4 λ_a λ_b;   quadrilateral: eight functions of the serendipity family
 //! ```
 
+use super::planar::CORNERS;
 use super::polygon::scaled;
 use super::primitive::Primitive;
 use crate::scalar::Scalar;
 
 /// Corners, then middles; the fourth of each is missing in a triangle.
 pub const NODES: usize = 8;
-
-/// ξ, η of the corners of a quadrilateral, counterclockwise.
-const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// What a patch at the start lacks to its primitive: a function of the own coordinates of the facet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,10 +21,13 @@ pub struct Remainder {
     pub start: [[f64; 3]; NODES],
 }
 
+/// In place of the fourth middle of a triangle.
+pub const NO_MIDDLE: u32 = u32::MAX;
+
 /// A facet of second degree.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bend {
-    /// Numbers of the middles of its edges, the first between the first two corners.
+pub struct QuadraticFacet {
+    /// Numbers of the middles of its edges, the first between the first two corners; [`NO_MIDDLE`] for none.
     pub middles: [u32; 4],
     /// None for a facet that lies in a plane, or on no primitive.
     pub remainder: Option<Remainder>,
@@ -121,14 +122,4 @@ pub struct Curve {
     pub count: usize,
     pub nodes: [[f64; 3]; NODES],
     pub remainder: Option<Remainder>,
-}
-
-/// a × b.
-pub fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// a·b.
-pub fn dot<T: Scalar>(a: [T; 3], b: [T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -46,7 +46,7 @@ struct Sensitivities {
     areas: Vec<f64>,
     values: Vec<f64>,
     /// By gap and N, in the columns after those of P.
-    bent: Vec<[f64; COLUMNS]>,
+    quadratic: Vec<[f64; COLUMNS]>,
 }
 
 impl Mortar {
@@ -80,27 +80,31 @@ impl Mortar {
             .collect();
         let mut areas = vec![0.0; self.slave.nodes.len()];
         let mut values = vec![0.0; self.places()];
-        let mut bent = vec![[0.0; COLUMNS]; areas.len()];
+        let mut quadratic = vec![[0.0; COLUMNS]; areas.len()];
         for (facet, cover) in self.covers() {
             let Some((sums, weights)) = &changes[facet] else { continue };
             let corners = self.slave.facets[facet].corners();
             corners.iter().zip(sums).for_each(|(&node, &change)| areas[node] += change);
             for (corner, &node) in corners.iter().enumerate() {
                 let own = weights.iter().map(|weights| &weights[corner]);
-                own.for_each(|row| (GAP..COLUMNS).for_each(|column| bent[node][column] += row[column]));
+                own.for_each(|row| (GAP..COLUMNS).for_each(|column| quadratic[node][column] += row[column]));
             }
             self.scatter(facet, cover, |slot, pair, i, j| values[slot] += weights[pair][i][j]);
         }
         let normals = match self.along {
             Along::X3 => vec![[0.0; 3]; areas.len()],
-            Along::Normals if self.is_bent() => {
+            Along::Normals if self.is_quadratic() => {
                 let change = |row: &[f64; COLUMNS]| [row[NORMAL], row[NORMAL + 1], row[NORMAL + 2]];
-                self.vector_areas.iter().zip(&bent).map(|(&area, row)| normals::turned(area, change(row))).collect()
+                self.vector_areas
+                    .iter()
+                    .zip(&quadratic)
+                    .map(|(&area, row)| normals::turned(area, change(row)))
+                    .collect()
             }
             Along::Normals => normals::changes(&self.slave, &self.vector_areas, &slave),
         };
         let of_node = |node: usize| NodeChange {
-            gap: self.quotient(node, bent[node][GAP], areas[node]),
+            gap: self.quotient(node, quadratic[node][GAP], areas[node]),
             ..self.divided(node, areas[node], &values, normals[node])
         };
         (0..areas.len()).map(of_node).collect()
@@ -173,7 +177,7 @@ impl Mortar {
             })
             .collect();
         let mut sums = [&self.slave, &self.master].map(|patch| vec![[0.0; 3]; patch.positions.len()]);
-        if self.along == Along::Normals && !self.is_bent() {
+        if self.along == Along::Normals && !self.is_quadratic() {
             let normals: Vec<_> = own.iter().map(|node| node.normal).collect();
             normals::pull_back(&self.slave, &self.vector_areas, &normals, &mut sums[0]);
         }
@@ -192,16 +196,16 @@ impl Mortar {
 
     /// Sensitivities to D of all nodes and to W at all places.
     fn sensitivities(&self, own: &[NodeSensitivity]) -> Sensitivities {
-        let mut bent = vec![[0.0; COLUMNS]; self.nodes.len()];
+        let mut quadratic = vec![[0.0; COLUMNS]; self.nodes.len()];
         let mut areas = vec![0.0; self.nodes.len()];
         let mut values = vec![0.0; self.places()];
         for (index, (node, given)) in self.nodes.iter().zip(own).enumerate().filter(|(_, (node, _))| node.area > 0.0) {
             areas[index] = given.area;
-            if self.is_bent() {
+            if self.is_quadratic() {
                 areas[index] -= given.gap * node.gap / node.area;
-                bent[index][GAP] = given.gap / node.area;
+                quadratic[index][GAP] = given.gap / node.area;
                 let normal = normals::turned(self.vector_areas[index], given.normal);
-                bent[index][NORMAL..].copy_from_slice(&normal);
+                quadratic[index][NORMAL..].copy_from_slice(&normal);
             }
             let places = &mut values[self.starts[index]..];
             for ((place, &(_, weight)), &factor) in places.iter_mut().zip(&node.weights).zip(&given.weights) {
@@ -209,7 +213,7 @@ impl Mortar {
                 areas[index] -= factor * weight / node.area;
             }
         }
-        Sensitivities { areas, values, bent }
+        Sensitivities { areas, values, quadratic }
     }
 
     fn facet_sensitivity(
@@ -222,7 +226,7 @@ impl Mortar {
     ) -> Option<FacetSensitivity> {
         let basis = cover.basis.as_ref()?;
         let any = |side: usize, patch: &Patch, facet: usize| {
-            let middles = patch.bends.get(facet).map_or(&[][..], |bend| &bend.nodes);
+            let middles = patch.quadratic_facets.get(facet).map_or(&[][..], |quadratic| &quadratic.nodes);
             patch.facets[facet].corners().iter().chain(middles).any(|&node| moving[side][node])
         };
         let own_moves = any(0, &self.slave, facet);
@@ -234,7 +238,7 @@ impl Mortar {
         let mut sums = [0.0; 4];
         for (corner, &node) in self.slave.facets[facet].corners().iter().enumerate() {
             sums[corner] = sensitivities.areas[node];
-            weights.iter_mut().for_each(|weights| weights[corner] = sensitivities.bent[node]);
+            weights.iter_mut().for_each(|weights| weights[corner] = sensitivities.quadratic[node]);
         }
         self.scatter(facet, cover, |slot, pair, i, j| weights[pair][i][j] = sensitivities.values[slot]);
         let (own, mixed) = basis.pull_back(cover, sums, &weights);
@@ -263,15 +267,15 @@ fn accumulate(sums: &mut [[f64; 3]], (patch, facet): (&Patch, usize), parts: &[[
     let count = patch.count(facet);
     let mut add = |node: usize, part: &[f64; 3]| (0..3).for_each(|axis| sums[node][axis] += part[axis]);
     patch.facets[facet].corners().iter().zip(parts).for_each(|(&corner, part)| add(corner, part));
-    if let Some(bend) = patch.bends.get(facet) {
-        (4..4 + count).for_each(|middle| add(bend.nodes[middle], &parts[middle]));
+    if let Some(quadratic) = patch.quadratic_facets.get(facet) {
+        (4..4 + count).for_each(|middle| add(quadratic.nodes[middle], &parts[middle]));
     }
 }
 
 /// Values at the corners and, for facets of second degree, at the middles of a facet.
 fn of_nodes(patch: &Patch, facet: usize, values: &[[f64; 3]]) -> [[f64; 3]; NODES] {
-    match patch.bends.get(facet) {
-        Some(bend) => bend.nodes.map(|node| values[node]),
+    match patch.quadratic_facets.get(facet) {
+        Some(quadratic) => quadratic.nodes.map(|node| values[node]),
         None => {
             let corners = patch.facets[facet].pick(values);
             std::array::from_fn(|node| corners.get(node).copied().unwrap_or([0.0; 3]))

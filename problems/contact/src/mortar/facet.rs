@@ -1,6 +1,6 @@
 //! Facets of a surface mesh and the part of the mesh they need.
 
-use super::curve::{Bend, Curve, NODES, Remainder};
+use super::curve::{Curve, NODES, QuadraticFacet, Remainder};
 
 /// Three or four corner nodes, counterclockwise seen from outside the own body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,12 +30,12 @@ pub struct Face<'a> {
     pub facets: &'a [Facet],
     pub positions: &'a [[f64; 3]],
     /// Middles of the edges, whose positions follow those of the nodes; one per facet, or none for flat facets.
-    pub bends: &'a [Bend],
+    pub quadratic_facets: &'a [QuadraticFacet],
 }
 
 /// A facet of second degree in the numbers of a [`Patch`]: corners, then middles.
 #[derive(Debug, Clone, Copy)]
-pub struct LocalBend {
+pub struct LocalQuadratic {
     pub nodes: [usize; NODES],
     remainder: Option<Remainder>,
 }
@@ -74,7 +74,7 @@ pub struct Patch {
     pub positions: Vec<[f64; 3]>,
     pub facets: Vec<Local>,
     /// One per facet; none for flat facets.
-    pub bends: Vec<LocalBend>,
+    pub quadratic_facets: Vec<LocalQuadratic>,
 }
 
 impl Patch {
@@ -85,21 +85,22 @@ impl Patch {
         let number = |node: u32| nodes.partition_point(|&other| other < node);
         let local = |facet: &Facet| Local { corners: facet.corners.map(number), count: facet.corners().len() };
         let facets: Vec<Local> = face.facets.iter().map(local).collect();
-        let used = |(facet, bend): (&Facet, &Bend)| bend.middles.into_iter().take(facet.corners().len());
-        let mut middles: Vec<u32> = face.facets.iter().zip(face.bends).flat_map(used).collect();
+        let used =
+            |(facet, quadratic): (&Facet, &QuadraticFacet)| quadratic.middles.into_iter().take(facet.corners().len());
+        let mut middles: Vec<u32> = face.facets.iter().zip(face.quadratic_facets).flat_map(used).collect();
         middles.sort_unstable();
         middles.dedup();
         let middle = |number: u32| nodes.len() + middles.partition_point(|&other| other < number);
-        let bends = facets.iter().zip(face.bends).map(|(facet, bend)| {
+        let quadratic_facets = facets.iter().zip(face.quadratic_facets).map(|(facet, quadratic)| {
             let own = |k: usize| match k.checked_sub(4) {
                 None => facet.corners[k],
-                Some(edge) => middle(bend.middles[edge.min(facet.count - 1)]),
+                Some(edge) => middle(quadratic.middles[edge.min(facet.count - 1)]),
             };
-            LocalBend { nodes: std::array::from_fn(own), remainder: bend.remainder }
+            LocalQuadratic { nodes: std::array::from_fn(own), remainder: quadratic.remainder }
         });
-        let bends = bends.collect();
+        let quadratic_facets = quadratic_facets.collect();
         let positions = nodes.iter().chain(&middles).map(|&node| face.positions[node as usize]).collect();
-        Self { nodes, middles, positions, facets, bends }
+        Self { nodes, middles, positions, facets, quadratic_facets }
     }
 
     /// Nodes and middles in the order of the positions.
@@ -109,9 +110,9 @@ impl Patch {
 
     /// A facet of second degree; none where facets are flat.
     pub fn curve(&self, facet: usize) -> Option<Curve> {
-        let bend = self.bends.get(facet)?;
-        let nodes = bend.nodes.map(|node| self.positions[node]);
-        Some(Curve { count: self.count(facet), nodes, remainder: bend.remainder })
+        let quadratic = self.quadratic_facets.get(facet)?;
+        let nodes = quadratic.nodes.map(|node| self.positions[node]);
+        Some(Curve { count: self.count(facet), nodes, remainder: quadratic.remainder })
     }
 
     /// The facets in the opposite sense, so that seen from the opposite surface they are counterclockwise.
@@ -120,10 +121,10 @@ impl Patch {
             let [a, b, c, d] = facet.corners;
             facet.corners = if facet.count == 4 { [a, d, c, b] } else { [a, c, b, b] };
         }
-        for (bend, facet) in self.bends.iter_mut().zip(&self.facets) {
+        for (quadratic, facet) in self.quadratic_facets.iter_mut().zip(&self.facets) {
             let order = if facet.count == 4 { [0, 3, 2, 1, 7, 6, 5, 4] } else { [0, 2, 1, 1, 6, 5, 4, 4] };
-            bend.nodes = order.map(|k| bend.nodes[k]);
-            if let Some(remainder) = &mut bend.remainder {
+            quadratic.nodes = order.map(|k| quadratic.nodes[k]);
+            if let Some(remainder) = &mut quadratic.remainder {
                 remainder.start = order.map(|k| remainder.start[k]);
             }
         }

@@ -10,7 +10,7 @@
 //! depends on them.
 
 use super::Along;
-use super::vector::{cross, dot, length, plus};
+use super::vector::{across, cross, dot, length, plus};
 
 /// A facet seen less than this (sine of the angle) from the direction of projection is left out.
 const EDGE_ON: f64 = 1e-9;
@@ -71,7 +71,7 @@ impl Frame {
             Along::Normals => {
                 let normal = area.map(|component| component / size);
                 let tilt = Tilt { diagonals: diagonals(corners), size, triangle: corners.len() == 3 };
-                Some(Self { centre, tangents: tangents(normal), normal, tilt: Some(tilt) })
+                Some(Self { centre, tangents: across(normal), normal, tilt: Some(tilt) })
             }
         }
     }
@@ -148,15 +148,4 @@ impl Bound {
         let normal = if size > EDGE_ON * radius * radius { area.map(|component| -component / size) } else { [0.0; 3] };
         Self { centre, radius, normal }
     }
-}
-
-/// Two unit vectors t₁, t₂ with t₁ × t₂ = n.
-fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
-    let axis = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
-    let mut unit = [0.0; 3];
-    unit[axis] = 1.0;
-    let raw = plus(unit, -normal[axis], normal);
-    let size = length(raw);
-    let first = raw.map(|component| component / size);
-    [first, cross(normal, first)]
 }

@@ -30,9 +30,10 @@ mod weights;
 #[cfg(test)]
 mod tests;
 
-pub use curve::{Bend, Remainder};
+pub use curve::{NO_MIDDLE, QuadraticFacet, Remainder};
 pub use derivative::NodeSensitivity;
 pub use facet::{Face, Facet};
+pub use frame::doubled_area;
 pub use primitive::Primitive;
 pub use weights::{Mortar, MortarNode};
 

@@ -5,6 +5,7 @@
 //! ```
 
 use super::facet::{Local, Patch};
+use super::planar::CORNERS;
 use super::vector::{cross, dot, length, plus};
 
 /// A point of a rule over a facet: weighted shape functions, and slopes of the shape functions along ξ and η.
@@ -12,9 +13,6 @@ struct RulePoint {
     weighted: [f64; 4],
     slopes: [[f64; 2]; 4],
 }
-
-/// ξ, η of the corners of a quadrilateral, counterclockwise.
-const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 fn quadrilateral(corner: usize) -> RulePoint {
     let [xi, eta] = CORNERS[corner].map(|s| s / 3.0_f64.sqrt());

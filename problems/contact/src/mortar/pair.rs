@@ -6,10 +6,11 @@
 //! fan of triangles about the centroid of the area, sixteen points of degree 8 in each
 //! ```
 
-use super::curve::{Curve, NODES, Quadratic, cross as cross3, dot as dot3};
+use super::curve::{Curve, NODES, Quadratic};
 use super::gradient::Gradient;
 use super::planar::{Element, Planar};
 use super::polygon::{Polygon, cross, minus, scaled};
+use super::vector::{cross as cross3, dot as dot3};
 use crate::scalar::Scalar;
 
 /// A common part smaller than this part of the slave facet is left out.

@@ -13,7 +13,7 @@ use crate::scalar::Scalar;
 const FLAT: f64 = 1e-10;
 
 /// ξ, η of the corners of a quadrilateral, counterclockwise.
-const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+pub const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// A projected facet, counterclockwise.
 #[derive(Debug, Clone, Copy)]

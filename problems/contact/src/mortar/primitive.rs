@@ -1,5 +1,6 @@
 //! Surfaces that faces of machines lie on, and the projection onto them.
 
+use super::vector::dot;
 use crate::scalar::Scalar;
 
 /// A surface without ends.
@@ -13,10 +14,6 @@ pub enum Primitive {
     Cone { point: [f64; 3], axis: [f64; 3], radius: f64, slope: f64 },
     /// A sphere.
     Sphere { point: [f64; 3], radius: f64 },
-}
-
-fn dot<T: Scalar>(a: [T; 3], b: [T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Primitive {

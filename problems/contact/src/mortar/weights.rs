@@ -36,6 +36,15 @@ pub struct MortarNode {
     pub gap: f64,
 }
 
+impl MortarNode {
+    /// Σ_j m_ij x_j − x_i, mm, for the positions of the nodes of both surfaces.
+    pub fn distance(&self, [slave, master]: [&[[f64; 3]]; 2]) -> [f64; 3] {
+        let x = slave[self.node as usize];
+        let mean = |axis: usize| self.weights.iter().map(|(j, m)| m * master[*j as usize][axis]).sum::<f64>();
+        std::array::from_fn(|axis| mean(axis) - x[axis])
+    }
+}
+
 /// The coupling of two surfaces.
 #[derive(Debug)]
 pub struct Mortar {
@@ -72,12 +81,12 @@ impl Mortar {
     }
 
     /// Whether facets are of second degree.
-    pub fn is_bent(&self) -> bool {
-        !self.slave.bends.is_empty() && !self.master.bends.is_empty()
+    pub fn is_quadratic(&self) -> bool {
+        !self.slave.quadratic_facets.is_empty() && !self.master.quadratic_facets.is_empty()
     }
 
     /// Σ over the pairs of a slave facet of gap and normal of a corner.
-    fn add_bent(&mut self, gaps: &mut [f64]) {
+    fn add_quadratic(&mut self, gaps: &mut [f64]) {
         let mut normals = vec![[0.0; 3]; gaps.len()];
         for (facet, cover) in self.covers() {
             for (corner, &node) in self.slave.facets[facet].corners().iter().enumerate() {
@@ -103,8 +112,8 @@ impl Mortar {
     fn assembled(&mut self, columns: &[usize]) -> Vec<MortarNode> {
         let count = self.slave.nodes.len();
         let mut gaps = vec![0.0; count];
-        if self.is_bent() {
-            self.add_bent(&mut gaps);
+        if self.is_quadratic() {
+            self.add_quadratic(&mut gaps);
         }
         let (mut areas, mut whole) = (vec![0.0; count], vec![0.0; count]);
         let mut values = vec![0.0; columns.len()];

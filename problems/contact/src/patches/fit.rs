@@ -6,7 +6,7 @@
 //! ```
 
 use crate::mortar::Primitive;
-use crate::mortar::vector::{cross, dot, length, plus};
+use crate::mortar::vector::{across, dot, length, plus};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// Largest distance of a node from its primitive, as a part of the size of the face.
@@ -22,20 +22,12 @@ const SPARE: usize = 2;
 pub(super) fn primitive(points: &[[f64; 3]], normals: &[[f64; 3]]) -> Option<Primitive> {
     let centre = mean(points);
     let size = points.iter().map(|&x| length(plus(x, -1.0, centre))).fold(0.0, f64::max);
-    let spread = |vectors: &[[f64; 3]]| {
-        let (middle, mut sum) = (mean(vectors), Matrix3::zeros());
-        for vector in vectors {
-            let from = Vector3::from(plus(*vector, -1.0, middle));
-            sum += from * from.transpose();
-        }
-        least_direction(sum)
-    };
     let fits = |primitive: &Primitive| points.iter().all(|&x| primitive.distance(x).abs() <= NEAR * size);
-    let plane = Primitive::Plane { point: centre, normal: spread(points) };
+    let plane = plane(points);
     if fits(&plane) {
         return Some(plane);
     }
-    let axis = spread(normals);
+    let axis = least_spread(normals);
     let (point, radius) = circle(points, axis, centre)?;
     let cylinder = Primitive::Cylinder { point, axis, radius };
     let cone = Primitive::Cone { point, axis, radius, slope: slope(points, point, axis) };
@@ -49,27 +41,26 @@ fn mean(points: &[[f64; 3]]) -> [f64; 3] {
     points.iter().fold([0.0; 3], |sum, &x| plus(sum, 1.0 / points.len() as f64, x))
 }
 
-/// The eigenvector of the smallest eigenvalue.
-fn least_direction(matrix: Matrix3<f64>) -> [f64; 3] {
-    let eigen = matrix.symmetric_eigen();
-    let least = eigen.eigenvalues.imin();
-    let vector = eigen.eigenvectors.column(least);
-    [vector[0], vector[1], vector[2]]
+/// The plane of least squares.
+pub(super) fn plane(points: &[[f64; 3]]) -> Primitive {
+    Primitive::Plane { point: mean(points), normal: least_spread(points) }
 }
 
-/// Two unit vectors across an axis.
-fn basis(axis: [f64; 3]) -> [[f64; 3]; 2] {
-    let least = (0..3).fold(0, |best, k| if axis[k].abs() < axis[best].abs() { k } else { best });
-    let unit: [f64; 3] = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
-    let first = cross(axis, unit);
-    let size = length(first);
-    let first = first.map(|x| x / size);
-    [first, cross(axis, first)]
+/// The direction along which some vectors vary least.
+fn least_spread(vectors: &[[f64; 3]]) -> [f64; 3] {
+    let (middle, mut sum) = (mean(vectors), Matrix3::zeros());
+    for vector in vectors {
+        let from = Vector3::from(plus(*vector, -1.0, middle));
+        sum += from * from.transpose();
+    }
+    let eigen = sum.symmetric_eigen();
+    let vector = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned();
+    [vector[0], vector[1], vector[2]]
 }
 
 /// The circle of least squares through the points seen along an axis: its centre and radius.
 fn circle(points: &[[f64; 3]], axis: [f64; 3], centre: [f64; 3]) -> Option<([f64; 3], f64)> {
-    let [a, b] = basis(axis);
+    let [a, b] = across(axis);
     let from = |x: [f64; 3]| {
         let from = plus(x, -1.0, centre);
         [dot(a, from), dot(b, from)]
@@ -150,7 +141,7 @@ fn improved(mut primitive: Primitive, points: &[[f64; 3]], size: f64) -> Option<
 /// A primitive with changed parameters, lengths in units of the size of the face, and the number of its parameters.
 fn moved(primitive: &Primitive, change: &[f64; 6], size: f64) -> (Primitive, usize) {
     let about = |point: [f64; 3], axis: [f64; 3]| {
-        let [a, b] = basis(axis);
+        let [a, b] = across(axis);
         let point = plus(plus(point, size * change[0], a), size * change[1], b);
         let turned = plus(plus(axis, change[2], a), change[3], b);
         let long = length(turned);
@@ -176,6 +167,7 @@ fn moved(primitive: &Primitive, change: &[f64; 6], size: f64) -> (Primitive, usi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mortar::vector::cross;
 
     /// A surface over two parameters.
     type Place<'a> = &'a dyn Fn(f64, f64) -> [f64; 3];

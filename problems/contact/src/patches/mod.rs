@@ -5,9 +5,9 @@
 //! ```
 //! A face is divided where facets meet at more than 30°, so that sharp edges stay sharp.
 
-mod bent_face;
+mod curved_face;
 mod fit;
 mod quadric;
 mod smooth_parts;
 
-pub(crate) use bent_face::{BentFace, MiddlePoint};
+pub(crate) use curved_face::{CurvedFace, MiddlePoint};

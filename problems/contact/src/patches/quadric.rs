@@ -7,7 +7,7 @@
 //! ```
 //! The term k z²/2 makes the fit, and the middle, exact on circles.
 
-use crate::mortar::vector::{cross, dot, length, plus};
+use crate::mortar::vector::{across, dot, length, plus};
 use nalgebra::{DMatrix, DVector};
 
 /// Sweeps of the fit.
@@ -72,16 +72,6 @@ fn quadric(local: &[[f64; 3]], curvature: f64) -> Option<[f64; 5]> {
     let cut = UNSEEN * svd.singular_values.max();
     let solution = svd.solve(&right, cut).ok()?;
     Some(std::array::from_fn(|k| if scales[k] > 0.0 { solution[k] / scales[k] } else { 0.0 }))
-}
-
-/// Two unit vectors across a normal.
-fn across(normal: [f64; 3]) -> [[f64; 3]; 2] {
-    let least = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
-    let unit: [f64; 3] = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
-    let first = cross(normal, unit);
-    let size = length(first);
-    let first = first.map(|x| x / size);
-    [first, cross(normal, first)]
 }
 
 /// The middle of the arc between two nodes with their normals.

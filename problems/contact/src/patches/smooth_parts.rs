@@ -1,7 +1,7 @@
 //! Parts of a face within which its surface has a tangent plane everywhere.
 
-use crate::mortar::Facet;
-use crate::mortar::vector::{cross, dot, length, plus};
+use crate::mortar::vector::{dot, length};
+use crate::mortar::{Facet, doubled_area};
 use std::collections::HashMap;
 
 /// Facets that meet at more than 30° do not belong to one smooth surface.
@@ -51,11 +51,7 @@ pub(super) fn edges(facet: &Facet) -> impl Iterator<Item = [u32; 2]> + '_ {
 
 /// The unit normal of a facet, zero where it has no area.
 pub(super) fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
-    let between = |from: usize, to: usize| plus(corners[to], -1.0, corners[from]);
-    let area = match corners.len() {
-        4 => cross(between(0, 2), between(1, 3)),
-        _ => cross(between(0, 1), between(0, 2)),
-    };
+    let area = doubled_area(corners);
     let size = length(area);
     if size > 0.0 { area.map(|x| x / size) } else { [0.0; 3] }
 }

@@ -120,10 +120,7 @@ impl ShapeMap {
 
     /// Positions of all nodes, mm.
     pub fn positions(&self, controls: &[f64]) -> Positions {
-        let nodes = |(body, points): (usize, Arc<Vec<[f64; 3]>>)| match self.nodes(body).len() {
-            count if count == points.len() => points,
-            count => Arc::new(points[..count].to_vec()),
-        };
+        let nodes = |(body, points): (usize, Arc<Vec<[f64; 3]>>)| first_of(&points, self.nodes(body).len());
         self.points(controls).into_iter().enumerate().map(nodes).collect()
     }
 
@@ -189,6 +186,11 @@ impl ShapeMap {
     pub fn row(&self, body: usize, node: u32, axis: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.matrix.row(3 * self.number(body, node) + axis)
     }
+}
+
+/// The first positions of a body: those of its nodes among those of all points.
+pub(crate) fn first_of(points: &Arc<Vec<[f64; 3]>>, count: usize) -> Arc<Vec<[f64; 3]>> {
+    if points.len() == count { Arc::clone(points) } else { Arc::new(points[..count].to_vec()) }
 }
 
 /// Fields of velocities of the nodes, one per change of the controls.

@@ -18,7 +18,7 @@ pub(crate) use bending::bending_rows;
 pub(crate) use heights::height_map;
 pub use heights::{HeightShape, ShapeBounds, ShapedFace};
 pub use lattice::{Coordinates, Directions, LatticeShape, NodeBound};
-pub(crate) use map::BodyMap;
+pub(crate) use map::{BodyMap, first_of};
 pub use map::{Positions, ShapeMap, Velocities};
 pub use pieces::Pieces;
 pub use scene::ShapeScene;

@@ -26,7 +26,7 @@ pub fn surfaces(kind: usize) -> [Surface; 2] {
     let [slave, master] = pair;
     match kind < 8 {
         true => [slave, master],
-        false => [slave.bent(0.02, 41 + kind, Some(sphere)), master.bent(0.02, 77 + kind, Some(sphere))],
+        false => [slave.curved(0.02, 41 + kind, Some(sphere)), master.curved(0.02, 77 + kind, Some(sphere))],
     }
 }
 
@@ -55,7 +55,7 @@ fn dense(mortar: &Mortar, masters: usize, changes: Option<&[NodeChange]>) -> Vec
         };
         let (area, normal) = changes.map_or((node.area, node.normal), |changes| (changes[k].area, changes[k].normal));
         row[3] = area;
-        if node.covered > 1e-3 || !mortar.is_bent() {
+        if node.covered > 1e-3 || !mortar.is_quadratic() {
             row[..3].copy_from_slice(&normal);
         }
         if node.covered > 1e-3 {

@@ -1,6 +1,6 @@
 //! Surfaces for the tests.
 
-use super::super::{Along, Bend, Face, Facet, Mortar, Primitive, Remainder};
+use super::super::{Along, Face, Facet, Mortar, NO_MIDDLE, Primitive, QuadraticFacet, Remainder};
 use std::collections::BTreeMap;
 
 /// A surface that owns its mesh.
@@ -9,7 +9,7 @@ pub struct Surface {
     pub facets: Vec<Facet>,
     /// Of nodes, then of middles of edges.
     pub positions: Vec<[f64; 3]>,
-    pub bends: Vec<Bend>,
+    pub quadratic_facets: Vec<QuadraticFacet>,
 }
 
 /// A number in (−1, 1) that looks random.
@@ -37,7 +37,7 @@ impl Surface {
                 facets.push(Facet::new(&ring).expect("four corners"));
             }
         }
-        Self { facets, positions, bends: Vec::new() }
+        Self { facets, positions, quadratic_facets: Vec::new() }
     }
 
     pub fn unit(n: usize, z: f64, up: bool) -> Self {
@@ -98,11 +98,11 @@ impl Surface {
     }
 
     /// Facets of second degree whose middles lie off their chords by up to `size`, with a primitive or without.
-    pub fn bent(mut self, size: f64, seed: usize, primitive: Option<Primitive>) -> Self {
+    pub fn curved(mut self, size: f64, seed: usize, primitive: Option<Primitive>) -> Self {
         let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         for facet in self.facets.clone() {
             let corners = facet.corners();
-            let (mut middles, mut start) = ([u32::MAX; 4], [[0.0; 3]; 8]);
+            let (mut middles, mut start) = ([NO_MIDDLE; 4], [[0.0; 3]; 8]);
             for (edge, &a) in corners.iter().enumerate() {
                 let b = corners[(edge + 1) % corners.len()];
                 let [x, y] = [a, b].map(|node| self.positions[node as usize]);
@@ -115,7 +115,8 @@ impl Surface {
                 start[edge] = x;
                 start[4 + edge] = self.positions[middles[edge] as usize];
             }
-            self.bends.push(Bend { middles, remainder: primitive.map(|primitive| Remainder { primitive, start }) });
+            self.quadratic_facets
+                .push(QuadraticFacet { middles, remainder: primitive.map(|primitive| Remainder { primitive, start }) });
         }
         self
     }
@@ -133,7 +134,7 @@ impl Surface {
     }
 
     pub fn face(&self) -> Face<'_> {
-        Face { facets: &self.facets, positions: &self.positions, bends: &self.bends }
+        Face { facets: &self.facets, positions: &self.positions, quadratic_facets: &self.quadratic_facets }
     }
 }
 

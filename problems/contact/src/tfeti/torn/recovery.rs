@@ -1,6 +1,7 @@
 //! Displacements of whole bodies from those of their torn pieces, and the transposed map.
 
 use crate::equilibrium::{Positions, SolvedBody};
+use crate::shape::first_of;
 use crate::tfeti::torn::model::TornModel;
 use crate::tfeti::torn::vectors::TornVector;
 use std::sync::Arc;
@@ -78,7 +79,7 @@ fn whole_body(model: &TornModel, number: usize, positions: &Positions, torn: &[f
     }
     SolvedBody {
         mesh: Arc::clone(&body.mesh),
-        positions: SolvedBody::nodes_of(&body.mesh, &positions[number]),
+        positions: first_of(&positions[number], body.mesh.node_count()),
         displacement,
         gluing_defect: spread.into_iter().fold(0.0, f64::max).sqrt(),
         subdomains,

@@ -1,9 +1,10 @@
 //! A face of a mesh with the middles of its edges on the surface that the mesh approximates.
 
 use super::{fit, quadric, smooth_parts};
-use crate::body::mesh::{CellFace, Mesh};
+use crate::body::mesh::{CellFace, Mesh, narrow};
+use crate::error::SceneError;
 use crate::mortar::vector::{length, plus};
-use crate::mortar::{Bend, Facet, Remainder};
+use crate::mortar::{Facet, NO_MIDDLE, Primitive, QuadraticFacet, Remainder};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Distance of a middle node from the chord, as a part of its length, that is rounding of files.
@@ -11,6 +12,11 @@ const STRAIGHT: f64 = 1e-9;
 
 /// A middle farther from its chord than this part of its length is no middle of an arc.
 const FOLDED: f64 = 0.25;
+
+/// Of a surface of third degree, z = c x³, a quadric over two rings of width h leaves 2/5 c (2h)³ = 3.2 c h³, and a
+/// patch over one facet max |t (t − 1/2) (t − 1)| c h³ = 0.048 c h³. The share is taken twice, for the error of the
+/// middles.
+const ONE_RING: f64 = 2.0 * 0.048 / 3.2;
 
 /// A point that is no node of the mesh: the middle of an edge on the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,22 +27,21 @@ pub(crate) struct MiddlePoint {
     pub place: [f64; 3],
 }
 
-/// The facets of a face with their bends.
+/// The facets of a face with their middles.
 #[derive(Debug, Clone)]
-pub(crate) struct BentFace {
+pub(crate) struct CurvedFace {
     /// The facets.
     pub facets: Vec<Facet>,
     /// One per facet.
-    pub bends: Vec<Bend>,
-    /// Points that are no nodes, numbered after the nodes of the mesh and those of other faces.
+    pub quadratic_facets: Vec<QuadraticFacet>,
+    /// Points that are no nodes, numbered after the nodes of the mesh.
     pub points: Vec<MiddlePoint>,
-    /// The number of the first of them.
-    next: u32,
-    /// How far a facet may lie from the true surface, mm, as the fit shows it: the distance of its nodes from their
-    /// primitive, or of the nodes around from their quadric.
+    /// How far a facet may lie from the true surface, mm: the distance of its nodes from their primitive; else what
+    /// the distance of the nodes around from their quadric tells; where nothing can be fitted, that of its nodes from
+    /// the mean plane.
     pub residuals: Vec<f64>,
     /// Whether any middle lies off its chord.
-    pub is_bent: bool,
+    pub is_curved: bool,
 }
 
 /// A smooth part of a face under work.
@@ -47,9 +52,12 @@ struct Part<'a> {
     normals: Vec<[f64; 3]>,
 }
 
-impl BentFace {
-    /// Finds the middles of all edges of a face; `next`: the number of the first new point.
-    pub(crate) fn new(mesh: &Mesh, faces: &[CellFace], next: u32) -> Self {
+impl CurvedFace {
+    /// Finds the middles of all edges of a face; `name` stands in messages.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a middle node of the file so far from its edge that the facet folds.
+    pub(crate) fn new(name: &str, mesh: &Mesh, faces: &[CellFace]) -> Result<Self, SceneError> {
         let given = faces.iter().filter_map(|face| {
             let (nodes, corners) = mesh.face_with_corners(*face);
             Some((Facet::new(&nodes[..corners])?, nodes))
@@ -61,104 +69,119 @@ impl BentFace {
         };
         let normals: Vec<[f64; 3]> = facets.iter().map(normal).collect();
         let (part_of, count) = smooth_parts::smooth_parts(&facets, &normals);
-        let mut bends = vec![None; facets.len()];
+        let mut quadratic_facets = vec![None; facets.len()];
         let mut this = Self {
-            bends: Vec::new(),
+            quadratic_facets: Vec::new(),
             points: Vec::new(),
-            next,
             residuals: vec![0.0; facets.len()],
-            is_bent: false,
+            is_curved: false,
             facets,
         };
         for part in 0..count {
             let own: Vec<usize> = (0..this.facets.len()).filter(|&facet| part_of[facet] == part).collect();
             let facets = own.iter().map(|&facet| (facet, this.facets[facet], nodes[facet].clone())).collect();
             let part = Part { mesh, facets, normals: own.iter().map(|&facet| normals[facet]).collect() };
-            this.add(&part, next, &mut bends);
+            part.check_middles(name)?;
+            this.add(&part, &mut quadratic_facets);
         }
-        this.bends = bends.into_iter().flatten().collect();
-        this
+        this.quadratic_facets = quadratic_facets.into_iter().flatten().collect();
+        Ok(this)
     }
 
-    /// The places of its points.
-    pub(crate) fn own_points(&self) -> impl Iterator<Item = &[f64; 3]> {
-        self.points.iter().map(|point| &point.place)
+    /// The face with its points numbered `by` higher, after those of other faces.
+    pub(crate) fn shifted(mut self, mesh: &Mesh, by: usize) -> Self {
+        let is_point = |number: &&mut u32| **number != NO_MIDDLE && **number as usize >= mesh.node_count();
+        let middles = self.quadratic_facets.iter_mut().flat_map(|quadratic| &mut quadratic.middles);
+        middles.filter(is_point).for_each(|number| *number += narrow(by));
+        self
     }
 
-    /// The bends with points numbered from `first` on, as if there were no other face.
-    pub(crate) fn own_bends(&self, first: usize) -> Vec<Bend> {
-        let own = |number: u32| match number {
-            u32::MAX => number,
-            _ if number >= self.next => number - self.next + first as u32,
-            _ => number,
-        };
-        self.bends.iter().map(|bend| Bend { middles: bend.middles.map(own), ..*bend }).collect()
-    }
-
-    fn add(&mut self, part: &Part<'_>, next: u32, bends: &mut [Option<Bend>]) {
+    fn add(&mut self, part: &Part<'_>, quadratic_facets: &mut [Option<QuadraticFacet>]) {
         let x = |node: u32| part.mesh.nodes()[node as usize];
-        let bent_nodes = part.bent_nodes();
+        let first = narrow(part.mesh.node_count());
+        let curved_edges = part.curved_edges();
         let mut points: BTreeSet<u32> = part.corners().collect();
-        points.extend(bent_nodes.iter().flat_map(|edges| edges.values().copied()));
+        points.extend(curved_edges.iter().flat_map(|edges| edges.values().copied()));
         let points: Vec<[f64; 3]> = points.into_iter().map(x).collect();
         let primitive = fit::primitive(&points, &part.normals);
+        let is_plane = matches!(primitive, Some(Primitive::Plane { .. }));
         let fits = if primitive.is_none() { part.fitted_normals() } else { HashMap::new() };
+        let plane = fit::plane(&points);
         let mut known: HashMap<[u32; 2], u32> = HashMap::new();
         for (facet, corners, _) in &part.facets {
-            let mut middles = [u32::MAX; 4];
+            let (mut middles, mut folded) = ([NO_MIDDLE; 4], 0.0_f64);
             for (middle, edge) in middles.iter_mut().zip(smooth_parts::edges(corners)) {
                 *middle = *known.entry(edge).or_insert_with(|| {
-                    if let Some(node) = bent_nodes.as_ref().and_then(|edges| edges.get(&edge)) {
+                    // In a plane, edges may be curved, and the surface is not.
+                    if let Some(node) = curved_edges.as_ref().filter(|_| !is_plane).and_then(|edges| edges.get(&edge)) {
                         return *node;
                     }
                     let ends = edge.map(x);
                     let chord: [f64; 3] = std::array::from_fn(|axis| 0.5 * (ends[0][axis] + ends[1][axis]));
                     let place = match (&primitive, edge.map(|node| fits.get(&node))) {
-                        (Some(primitive), _) => primitive.project(chord),
+                        (Some(primitive), _) if !is_plane => primitive.project(chord),
                         (None, [Some(first), Some(second)]) => quadric::middle(ends, [first.normal, second.normal]),
-                        (None, _) => chord,
+                        (_, _) => chord,
                     };
-                    let long = length(plus(ends[1], -1.0, ends[0]));
-                    let is_arc = length(plus(place, -1.0, chord)) <= FOLDED * long;
+                    let arm = length(plus(place, -1.0, chord));
+                    let is_arc = arm <= FOLDED * length(plus(ends[1], -1.0, ends[0]));
+                    if !is_arc {
+                        folded = folded.max(arm);
+                    }
                     self.points.push(MiddlePoint { ends: edge, place: if is_arc { place } else { chord } });
-                    next + self.points.len() as u32 - 1
+                    first + narrow(self.points.len()) - 1
                 });
             }
-            let place = |number: u32| match number.checked_sub(next) {
+            let place = |number: u32| match number.checked_sub(first) {
                 Some(own) => self.points[own as usize].place,
                 None => x(number),
             };
-            self.is_bent |=
+            self.is_curved |=
                 smooth_parts::edges(corners).zip(middles).any(|(edge, middle)| is_off(edge.map(x), place(middle)));
             let mut start = [[0.0; 3]; 8];
             corners.corners().iter().enumerate().for_each(|(k, &node)| start[k] = x(node));
-            middles.iter().enumerate().filter(|(_, m)| **m != u32::MAX).for_each(|(k, &m)| start[4 + k] = place(m));
+            middles.iter().enumerate().filter(|(_, m)| **m != NO_MIDDLE).for_each(|(k, &m)| start[4 + k] = place(m));
             let residual = |node: &u32| match (&primitive, fits.get(node)) {
-                (Some(primitive), _) => primitive.distance(x(*node)).abs(),
-                (None, Some(fit)) => fit.residual,
-                (None, None) => 0.0,
+                (None, Some(fit)) => ONE_RING * fit.residual,
+                (primitive, _) => primitive.unwrap_or(plane).distance(x(*node)).abs(),
             };
-            self.residuals[*facet] = corners.corners().iter().map(residual).fold(0.0, f64::max);
-            let curved = primitive.filter(|primitive| !matches!(primitive, crate::mortar::Primitive::Plane { .. }));
-            let remainder = curved.map(|primitive| Remainder { primitive, start });
-            bends[*facet] = Some(Bend { middles, remainder });
+            self.residuals[*facet] = corners.corners().iter().map(residual).fold(folded, f64::max);
+            let remainder = primitive.filter(|_| !is_plane).map(|primitive| Remainder { primitive, start });
+            quadratic_facets[*facet] = Some(QuadraticFacet { middles, remainder });
         }
     }
 }
 
+/// From the middle of a chord to that of its edge.
+fn arm([a, b]: [[f64; 3]; 2], middle: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| middle[axis] - 0.5 * (a[axis] + b[axis]))
+}
+
 /// Whether the middle of an edge lies off its chord.
 fn is_off([a, b]: [[f64; 3]; 2], middle: [f64; 3]) -> bool {
-    let arm: [f64; 3] = std::array::from_fn(|axis| middle[axis] - 0.5 * (a[axis] + b[axis]));
-    length(arm) > STRAIGHT * length(plus(b, -1.0, a))
+    length(arm([a, b], middle)) > STRAIGHT * length(plus(b, -1.0, a))
 }
 
 impl Part<'_> {
+    /// Refuses middle nodes of the file so far from their edges that facets fold.
+    fn check_middles(&self, name: &str) -> Result<(), SceneError> {
+        let Some(edges) = self.curved_edges() else { return Ok(()) };
+        let x = |node: u32| self.mesh.nodes()[node as usize];
+        for (edge, middle) in edges {
+            let [a, b] = edge.map(x);
+            let share = length(arm([a, b], x(middle))) / length(plus(b, -1.0, a));
+            let value = format!("a middle node at {:?}, {share:.2} of the length of its edge beside it", x(middle));
+            SceneError::require(share <= FOLDED, name, value, "middle nodes within a quarter of that length")?;
+        }
+        Ok(())
+    }
+
     fn corners(&self) -> impl Iterator<Item = u32> + '_ {
         self.facets.iter().flat_map(|(_, facet, _)| facet.corners().iter().copied())
     }
 
     /// The middle nodes of the mesh by their edges, where any of them lies off its chord.
-    fn bent_nodes(&self) -> Option<BTreeMap<[u32; 2], u32>> {
+    fn curved_edges(&self) -> Option<BTreeMap<[u32; 2], u32>> {
         let mut edges = BTreeMap::new();
         for (_, facet, nodes) in &self.facets {
             let middles = &nodes[facet.corners().len()..];
