@@ -366,10 +366,9 @@ fn oracle(error: ContactError) -> OracleError {
     match error {
         // Loops that were ended say no more than that they did not converge.
         _ if interrupted() => OracleError::Interrupted,
-        ContactError::InvertedElement { .. }
-        | ContactError::NoFoot { .. }
-        | ContactError::LeftMaster { .. }
-        | ContactError::TiedRotation { .. } => OracleError::OutsideDomain { reason: error.to_string() },
+        ContactError::InvertedElement { .. } | ContactError::NoFoot { .. } | ContactError::LeftMaster { .. } => {
+            OracleError::OutsideDomain { reason: error.to_string() }
+        }
         ContactError::NotConverged { solver, residual, iterations, .. } => {
             OracleError::NotConverged { solver, residual, iterations }
         }

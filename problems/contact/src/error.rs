@@ -145,19 +145,6 @@ pub enum ContactError {
         /// Its position, mm.
         place: [f64; 3],
     },
-    /// Middle nodes of curved contact faces hold a rotation that supports leave free.
-    #[error(
-        "supports leave the {motion} free, but the middle nodes of its curved contact faces would hold it: on contact faces of tet10 \
-         cells they move as the mean of the ends of their edges, which a rotation of a curved edge does not (one lies \
-         {arm:.3e} mm off its chord, allowed: rounding). Use hex8 cells, keep the edges of the contact faces straight, or hold \
-         the rotation by supports"
-    )]
-    TiedRotation {
-        /// The motion with the name of the body, in words.
-        motion: String,
-        /// The largest distance of a middle node from the middle of its chord, mm.
-        arm: f64,
-    },
     /// A stiffness matrix resists a rigid motion, or is not finite.
     #[error(
         "the stiffness matrix of {body} resists rigid motions: |K R| = {ratio:.1e} |K| |R|, allowed: {allowed:.0e}"
@@ -333,7 +320,6 @@ impl ContactError {
             Self::InvertedElement { .. }
                 | Self::NoFoot { .. }
                 | Self::NoEquilibrium { .. }
-                | Self::TiedRotation { .. }
                 | Self::ResistsRigidMotions { .. }
                 | Self::FrictionTooWeak { .. }
                 | Self::ForeignState { .. }

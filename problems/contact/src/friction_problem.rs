@@ -9,10 +9,11 @@
 //! are eliminated: what supports prescribe there is part of f, g and s.
 
 use crate::body::loads::piece_loads;
-use crate::body::{Body, NodalAxes, Piece};
+use crate::body::{Body, NodalAxes, Piece, Trace, TraceWeights};
 use crate::equilibrium::{ContactPoint, ContactProblem, NodeRows};
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
+use std::collections::BTreeMap;
 
 /// Rows of H per contact node: the normal, then two tangential directions.
 pub const ROWS: usize = 3;
@@ -61,8 +62,10 @@ impl FrictionProblem {
         let points = &problem.boundary.points;
         let nodes = || points.iter().zip(&rows.nodes);
         let along = |(point, node): (&ContactPoint, &NodeRows), direction: &[f64; 3]| -> f64 {
-            let jump = point.prescribed_jump(&node.weights);
-            jump.iter().zip(direction).map(|(jump, d)| jump * d).sum()
+            let own = point.prescribed_jump(&node.weights);
+            let by_trace = rows.prescribed_by_trace((point, node), &problem.bodies);
+            let jump = own.into_iter().zip(by_trace).map(|(own, by_trace)| own + by_trace);
+            jump.zip(direction).map(|(jump, d)| jump * d).sum()
         };
         let slip = |(point, node): (&ContactPoint, &NodeRows)| {
             tangents(node.all_directions(&point.free)).map(|tangent| -along((point, node), &tangent))
@@ -85,7 +88,8 @@ impl FrictionProblem {
             let axes = NodalAxes::new(body, &piece);
             let numbers = this.add_body(number, body, (&piece, &axes), positions);
             let contact = (number, &piece, &axes, numbers.as_slice());
-            points.iter().zip(&rows.nodes).enumerate().for_each(|node| this.add_contact(node, contact));
+            let trace = (&body.trace, &rows.traces[number]);
+            points.iter().zip(&rows.nodes).enumerate().for_each(|node| this.add_contact(node, contact, trace));
         }
         Ok(this)
     }
@@ -118,7 +122,7 @@ impl FrictionProblem {
         let mut loads = piece_loads(body, piece, positions);
         axes.turn(&mut loads);
         let mut carried = vec![0.0; loads.len()];
-        lower.multiply(&values, &axes.lift(body, piece), &mut carried);
+        lower.multiply(&values, &axes.lift(piece, |node| body.prescribed(node)), &mut carried);
         add_scaled(&mut loads, -1.0, &carried);
         let loads = loads.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
         self.load.extend(loads.map(|(force, _)| force));
@@ -130,18 +134,25 @@ impl FrictionProblem {
         &mut self,
         (index, (point, row)): (usize, (&ContactPoint, &NodeRows)),
         (body, piece, axes, numbers): (usize, &Piece, &NodalAxes, &[Option<usize>]),
+        (trace, weights): (&Trace, &TraceWeights),
     ) {
         let sides = point.sides.iter().zip(&row.weights);
+        let mut entries: BTreeMap<(usize, usize), f64> = BTreeMap::new();
         for (side, weight) in sides.filter(|(side, weight)| side.body == body && **weight != 0.0) {
-            let Some(place) = piece.local(side.node) else { continue };
             for (offset, direction) in row.all_directions(&point.free).into_iter().enumerate() {
-                let turned = axes.turn_at(place, direction);
-                for axis in (0..3).filter(|axis| turned[*axis] != 0.0) {
-                    let entry = |number| (ROWS * index + offset, number, -weight * turned[axis]);
-                    self.contact.extend(numbers[3 * place + axis].map(entry));
-                }
+                let force = direction.map(|d| -weight * d);
+                trace.spread(weights, side.node, force, &mut |node, share| {
+                    let Some(place) = piece.local(node) else { return };
+                    let turned = axes.turn_at(place, share);
+                    for axis in (0..3).filter(|axis| turned[*axis] != 0.0) {
+                        if let Some(number) = numbers[3 * place + axis] {
+                            *entries.entry((ROWS * index + offset, number)).or_insert(0.0) += turned[axis];
+                        }
+                    }
+                });
             }
         }
+        self.contact.extend(entries.into_iter().map(|((row, column), value)| (row, column, value)));
     }
 }
 

@@ -1,9 +1,9 @@
-//! A body of a scene: its mesh with materials, supports, loads and tied nodes. What does not depend on the shape.
+//! A body of a scene: its mesh with materials, supports, loads and trace. What does not depend on the shape.
 
 use crate::body::loaded::Loaded;
 use crate::body::mesh::{CellFace, Mesh, narrow};
 use crate::body::support::{Directions, held_directions};
-use crate::body::{Patterns, Piece, Solid};
+use crate::body::{Patterns, Piece, Solid, Trace};
 use crate::error::SceneError;
 use crate::scene::BodyScene;
 use std::collections::HashMap;
@@ -19,8 +19,10 @@ pub struct Body {
     pub name: String,
     /// Its mesh; positions of a shape are given apart from it.
     pub mesh: Arc<Mesh>,
-    /// The mesh with materials and tied nodes.
+    /// The mesh with materials.
     pub solid: Solid,
+    /// What contact rows see of its displacements.
+    pub(crate) trace: Trace,
     held: HashMap<u32, Directions>,
     pub(crate) loads: Vec<Loaded>,
     /// Its pieces for total FETI.
@@ -43,9 +45,12 @@ impl Body {
         let loads = scene.loads.iter().enumerate();
         let loads = loads.map(|(index, load)| Loaded::new(&format!("{name}.loads[{index}]"), load, &mesh));
         let loads = loads.collect::<Result<_, _>>()?;
+        let free = |node: u32| held.get(&node).map_or_else(|| AXES.to_vec(), Directions::free);
+        let trace = Trace::new(&mesh, contact, |node| held.get(&node).map_or(&[], Directions::held), free);
         let mut body = Self {
             name: name.to_owned(),
-            solid: Solid::new(name, scene, Arc::clone(&mesh), contact)?,
+            solid: Solid::new(name, scene, Arc::clone(&mesh))?,
+            trace,
             held,
             loads,
             pieces: Vec::new(),
@@ -54,37 +59,29 @@ impl Body {
         let piece_of = body.mesh.pieces().map_or_else(|| body.mesh.partitioned(piece_count), <[u32]>::to_vec);
         let mut known = Patterns::default();
         let cells = cells_by_piece(&piece_of);
-        body.pieces = cells.into_iter().map(|cells| Piece::new(&body.solid, cells, &mut known)).collect();
+        body.pieces = cells.into_iter().map(|cells| Piece::new(&body.mesh, cells, &mut known)).collect();
         Ok(body)
     }
 
     /// The whole body as one piece.
     pub fn whole(&self) -> Piece {
-        Piece::new(&self.solid, (0..self.mesh.cell_count() as u32).collect(), &mut Patterns::default())
+        Piece::new(&self.mesh, (0..self.mesh.cell_count() as u32).collect(), &mut Patterns::default())
     }
 
-    /// The orthonormal directions in which supports hold a node; all for a tied node, which has displacements against
-    /// its ends alone.
+    /// The orthonormal directions in which supports hold a node.
     pub fn held(&self, node: u32) -> &[[f64; 3]] {
-        if self.solid.ends_of(node).is_some() { &AXES } else { self.supported(node) }
-    }
-
-    /// The orthonormal directions in which supports hold a node, tied or not: those in which a shape does not move it.
-    pub fn supported(&self, node: u32) -> &[[f64; 3]] {
         self.held.get(&node).map_or(&[], Directions::held)
     }
 
-    /// The held directions of a node, each with the first support of the scene that holds it; none for a tied node.
+    /// The held directions of a node, each with the first support of the scene that holds it.
     pub fn held_by(&self, node: u32) -> impl Iterator<Item = ([f64; 3], usize)> + '_ {
-        let held = self.held.get(&node).filter(|_| self.solid.ends_of(node).is_none());
-        held.into_iter().flat_map(|held| held.held().iter().copied().zip(held.supports().iter().copied()))
+        let held = self.held.get(&node).into_iter();
+        held.flat_map(|held| held.held().iter().copied().zip(held.supports().iter().copied()))
     }
 
-    /// The displacement that supports prescribe to a node, along the axes, mm: a sum of its held directions; 0 against
-    /// its ends for a tied node.
+    /// The displacement that supports prescribe to a node, along the axes, mm: a sum of its held directions.
     pub fn prescribed(&self, node: u32) -> [f64; 3] {
-        let held = self.held.get(&node).filter(|_| self.solid.ends_of(node).is_none());
-        held.map_or([0.0; 3], Directions::displacement)
+        self.held.get(&node).map_or([0.0; 3], Directions::displacement)
     }
 
     /// The largest component of a displacement that supports prescribe, mm; 0 where they hold nodes at rest.
@@ -95,24 +92,14 @@ impl Body {
 
     /// Orthonormal directions in which a node is free.
     pub fn free(&self, node: u32) -> Vec<[f64; 3]> {
-        match self.held.get(&node) {
-            _ if self.solid.ends_of(node).is_some() => Vec::new(),
-            Some(held) => held.free(),
-            None => AXES.to_vec(),
-        }
+        self.held.get(&node).map_or_else(|| AXES.to_vec(), Directions::free)
     }
 
-    /// Nodes that supports hold, ascending; tied ones move with their ends and are left out.
+    /// Nodes that supports hold, ascending.
     pub fn held_nodes(&self) -> Vec<u32> {
-        let mut nodes: Vec<u32> =
-            self.held.keys().copied().filter(|node| self.solid.ends_of(*node).is_none()).collect();
+        let mut nodes: Vec<u32> = self.held.keys().copied().collect();
         nodes.sort_unstable();
         nodes
-    }
-
-    /// Displacements of all nodes, from those of the nodes of a piece that is the whole body.
-    pub fn extended(&self, whole: &Piece, values: &[f64]) -> Vec<[f64; 3]> {
-        (0..self.mesh.node_count() as u32).map(|node| whole.value_at(&self.solid, node, values)).collect()
     }
 }
 

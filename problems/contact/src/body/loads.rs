@@ -198,7 +198,7 @@ pub fn nodal_forces(body: &Body, positions: &[[f64; 3]]) -> Vec<(u32, [f64; 3])>
 pub fn piece_loads(body: &Body, piece: &Piece, positions: &[[f64; 3]]) -> Vec<f64> {
     let mut forces = vec![0.0; piece.dof_count()];
     let is_own = |cell: u32| piece.cells.binary_search(&cell).is_ok();
-    let add = |node: u32, force: [f64; 3]| piece.add_force(&body.solid, node, force, &mut forces);
+    let add = |node: u32, force: [f64; 3]| piece.add_force(node, force, &mut forces);
     visit(body, is_own, &|node: u32| positions[node as usize], add);
     forces
 }
@@ -216,7 +216,7 @@ pub fn add_moved_loads(
         let (x, v) = (positions[node as usize], velocity(node));
         std::array::from_fn(|axis| Dual::new(x[axis], v[axis]))
     };
-    let add = |node: u32, force: [Dual; 3]| piece.add_force(&body.solid, node, force.map(|f| f.derivative), forces);
+    let add = |node: u32, force: [Dual; 3]| piece.add_force(node, force.map(|f| f.derivative), forces);
     visit(body, is_own, &x, add);
 }
 

@@ -2,7 +2,7 @@
 //! element sums of the adjoint.
 //!
 //! ```text
-//! mesh ─ materials, supports, loads, tied nodes ─▶ Body ─ cells ─▶ Piece: pattern, matrix
+//! mesh ─ materials, supports, loads, trace ─▶ Body ─ cells ─▶ Piece: pattern, matrix
 //! positions of a shape, u, p ─ shape_sensitivity ─▶ −pᵀ∂(K u − f)/∂x      velocities ─ shape_force ─▶ −∂(K u − f)[x′]
 //! ```
 
@@ -19,11 +19,15 @@ pub(crate) mod shape_force;
 pub(crate) mod shape_sensitivity;
 mod solid;
 mod support;
+mod trace;
 
 pub use body::Body;
 pub use loads::load_size;
 pub(crate) use nodal_axes::NodalAxes;
+pub(crate) use piece::lower_pattern;
 pub use piece::{Patterns, Piece, PiecePattern};
-pub use rigid_motions::{MOTIONS, Place};
-pub use solid::{Ends, Solid};
+pub use rigid_motions::{MOTIONS, rigid_motions};
+pub use solid::Solid;
 pub(crate) use support::{beyond, nodal_normals};
+pub use trace::TraceWeights;
+pub(crate) use trace::Trace;

@@ -36,9 +36,9 @@ impl NodalAxes {
         Self { held, turned }
     }
 
-    /// The displacements that supports prescribe in these coordinates, mm; 0 at free dofs.
-    pub fn lift(&self, body: &Body, piece: &Piece) -> Vec<f64> {
-        let mut lift: Vec<f64> = piece.nodes.iter().flat_map(|&node| body.prescribed(node)).collect();
+    /// The displacements that supports prescribe to the nodes of a piece, in these coordinates, mm; 0 at free dofs.
+    pub fn lift(&self, piece: &Piece, prescribed: impl Fn(u32) -> [f64; 3]) -> Vec<f64> {
+        let mut lift: Vec<f64> = piece.nodes.iter().flat_map(|&node| prescribed(node)).collect();
         self.turn(&mut lift);
         lift.iter_mut().zip(&self.held).filter(|(_, held)| !**held).for_each(|(value, _)| *value = 0.0);
         lift
@@ -68,12 +68,6 @@ impl NodalAxes {
         for (node, value) in values.as_chunks_mut::<3>().0.iter_mut().enumerate() {
             *value = self.turn_back_at(node, *value);
         }
-    }
-
-    /// Forces in these coordinates, 0 at held dofs.
-    pub fn free_forces(&self, values: &mut [f64]) {
-        self.turn(values);
-        values.iter_mut().zip(&self.held).filter(|(_, held)| **held).for_each(|(value, _)| *value = 0.0);
     }
 
     /// Q K Qᵀ in place, for the lower values of K.

@@ -5,8 +5,8 @@
 
 use crate::body::elasticity::Material;
 use crate::body::elasticity::packed::lower_start;
-use crate::body::mesh::narrow;
-use crate::body::{MOTIONS, Place, Solid};
+use crate::body::mesh::{Mesh, narrow};
+use crate::body::{MOTIONS, Solid, rigid_motions};
 use crate::error::ContactError;
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
@@ -23,8 +23,7 @@ const RESISTED: f64 = 1e-8;
 pub struct Piece {
     /// Its cells in the mesh, ascending.
     pub cells: Vec<u32>,
-    /// Its nodes, ascending: dofs 3·index + component. Those of a tied node are its displacements against the mean of
-    /// its ends, which are held at zero.
+    /// Its nodes, ascending: dofs 3·index + component.
     pub nodes: Vec<u32>,
     /// What it shares with pieces that are numbered alike.
     pub pattern: Arc<PiecePattern>,
@@ -35,7 +34,8 @@ pub struct Piece {
 pub struct PiecePattern {
     /// Lower triangle of the stiffness matrix.
     pub lower: Arc<LowerPattern>,
-    cells: Vec<LocalCell>,
+    /// The nodes of every cell in the piece.
+    cells: Vec<Vec<u32>>,
     /// Position of the lower entries of every cell in the value array, cell by cell.
     scatter: Vec<u32>,
     /// Three nodes that span a large triangle: enough to hold all rigid motions.
@@ -45,31 +45,21 @@ pub struct PiecePattern {
     graph: Vec<Vec<u32>>,
 }
 
-/// A cell of a piece.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-struct LocalCell {
-    /// Its nodes in the piece.
-    nodes: Vec<u32>,
-    /// Tied nodes with their ends, by their places among its nodes.
-    ties: Vec<[u8; 3]>,
-}
-
 /// Patterns by the numbering of their cells.
 #[derive(Debug, Default)]
-pub struct Patterns(HashMap<(Vec<LocalCell>, [usize; 3]), Arc<PiecePattern>>);
+pub struct Patterns(HashMap<(Vec<Vec<u32>>, [usize; 3]), Arc<PiecePattern>>);
 
 impl Piece {
     /// The piece of some cells of a body, ascending; patterns are shared by way of `known`.
-    pub fn new(solid: &Solid, cells: Vec<u32>, known: &mut Patterns) -> Self {
-        let mesh = &*solid.mesh;
+    pub fn new(mesh: &Mesh, cells: Vec<u32>, known: &mut Patterns) -> Self {
         let mut nodes: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell(cell as usize).nodes).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let local: Vec<LocalCell> = cells.iter().map(|&cell| local_cell(solid, &nodes, cell as usize)).collect();
+        let place = |node: &u32| narrow(nodes.binary_search(node).expect("invariant: taken from these cells"));
+        let local: Vec<Vec<u32>> =
+            cells.iter().map(|&cell| mesh.cell(cell as usize).nodes.iter().map(place).collect()).collect();
         let points: Vec<[f64; 3]> = nodes.iter().map(|&node| mesh.nodes()[node as usize]).collect();
-        let untied: Vec<usize> = (0..nodes.len()).filter(|&place| solid.ends_of(nodes[place]).is_none()).collect();
-        let fixing = fixing_nodes(&untied.iter().map(|&place| points[place]).collect::<Vec<_>>());
-        let fixing = fixing.map(|index| untied[index]);
+        let fixing = fixing_nodes(&points);
         let key = (local.clone(), fixing);
         let build = || Arc::new(PiecePattern::new(local, points, fixing));
         let pattern = Arc::clone(known.0.entry(key).or_insert_with(build));
@@ -91,15 +81,6 @@ impl Piece {
         self.nodes.iter().map(|&node| positions[node as usize])
     }
 
-    /// What of its nodes moves in rigid motions.
-    pub(crate) fn places<'a>(
-        &'a self,
-        solid: &'a Solid,
-        positions: &'a [[f64; 3]],
-    ) -> impl Iterator<Item = Place> + 'a {
-        self.nodes.iter().map(|&node| solid.place(node, positions))
-    }
-
     /// Values of the stiffness matrix over [`PiecePattern::lower`], for the materials of a body or others in their
     /// place.
     pub fn assemble(
@@ -110,10 +91,9 @@ impl Piece {
     ) -> Vec<f64> {
         let mut values = vec![0.0; self.pattern.lower.entry_count()];
         let mut scatter = self.pattern.scatter.iter();
-        for (&cell, local) in self.cells.iter().zip(&self.pattern.cells) {
+        for &cell in &self.cells {
             let cell = cell as usize;
-            let mut matrix = solid.mesh.cell_nodes(cell, positions).stiffness(&material(solid.material(cell)));
-            local.fold(&mut matrix);
+            let matrix = solid.mesh.cell_nodes(cell, positions).stiffness(&material(solid.material(cell)));
             for (entry, &place) in matrix.iter().zip(scatter.by_ref().take(matrix.len())) {
                 values[place as usize] += entry;
             }
@@ -128,7 +108,6 @@ impl Piece {
     /// [`ContactError::ResistsRigidMotions`] with |K R| over |K| |R|, in the largest entries.
     pub(crate) fn check_kernel(
         &self,
-        solid: &Solid,
         name: &str,
         positions: &[[f64; 3]],
         stiffness: &[f64],
@@ -142,7 +121,7 @@ impl Piece {
         }
         let centre: [f64; 3] = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
         let length = (0..3).map(|axis| 0.5 * (high[axis] - low[axis])).fold(0.0, f64::max);
-        let motions: Vec<_> = self.places(solid, positions).map(|place| place.motions(centre, length)).collect();
+        let motions: Vec<_> = self.positions(positions).map(|point| rigid_motions(point, centre, length)).collect();
         let mut image = vec![0.0; self.dof_count()];
         let mut resisted = 0.0_f64;
         for mode in 0..MOTIONS {
@@ -159,96 +138,35 @@ impl Piece {
 
     /// Displacements of all nodes of a cell, by its place among the cells, from those of the piece.
     pub fn cell_values(&self, index: usize, values: &[f64], cell_values: &mut Vec<f64>) {
-        self.pattern.cells[index].gather(values, cell_values);
+        cell_values.clear();
+        let nodes = &self.pattern.cells[index];
+        nodes.iter().for_each(|&place| cell_values.extend_from_slice(&values[3 * place as usize..][..3]));
     }
 
-    /// Adds forces on all nodes of a cell to those of the piece: the work of a force on a tied node is that on its own
-    /// dofs, and half of it on each of its ends.
+    /// Adds forces on all nodes of a cell to those of the piece.
     pub fn add_cell_forces(&self, index: usize, forces: &[f64], sum: &mut [f64]) {
-        let cell = &self.pattern.cells[index];
-        let forces = forces.as_chunks::<3>().0;
-        let mut add = |node: u8, force: &[f64; 3], share: f64| {
-            let place = 3 * cell.nodes[usize::from(node)] as usize;
-            (0..3).for_each(|axis| sum[place + axis] += share * force[axis]);
-        };
-        forces.iter().enumerate().for_each(|(node, force)| add(node as u8, force, 1.0));
-        for &[tied, a, b] in &cell.ties {
-            [a, b].into_iter().for_each(|end| add(end, &forces[usize::from(tied)], 0.5));
+        for (&place, force) in self.pattern.cells[index].iter().zip(forces.as_chunks::<3>().0) {
+            (0..3).for_each(|axis| sum[3 * place as usize + axis] += force[axis]);
         }
     }
 
-    /// Adds a force on a node of the mesh to the forces on the piece, as [`add_cell_forces`](Self::add_cell_forces).
-    pub fn add_force(&self, solid: &Solid, node: u32, force: [f64; 3], sum: &mut [f64]) {
-        let mut add = |node: u32, share: f64| {
-            let place = self.local(node).expect("invariant: cells of the piece have this node");
-            (0..3).for_each(|axis| sum[3 * place + axis] += share * force[axis]);
-        };
-        add(node, 1.0);
-        solid.ends_of(node).into_iter().flatten().for_each(|end| add(end, 0.5));
+    /// Adds a force on a node of the mesh to the forces on the piece.
+    pub fn add_force(&self, node: u32, force: [f64; 3], sum: &mut [f64]) {
+        let place = self.local(node).expect("invariant: cells of the piece have this node");
+        (0..3).for_each(|axis| sum[3 * place + axis] += force[axis]);
     }
 
     /// The value of a field over the piece at a node of the mesh.
-    pub fn value_at(&self, solid: &Solid, node: u32, values: &[f64]) -> [f64; 3] {
-        let at = |node: u32| {
-            let place = self.local(node).expect("invariant: cells of the piece have this node");
-            [values[3 * place], values[3 * place + 1], values[3 * place + 2]]
-        };
-        let own = at(node);
-        match solid.ends_of(node).map(|ends| ends.map(at)) {
-            None => own,
-            Some([a, b]) => std::array::from_fn(|axis| own[axis] + 0.5 * (a[axis] + b[axis])),
-        }
+    pub fn value_at(&self, node: u32, values: &[f64]) -> [f64; 3] {
+        let place = self.local(node).expect("invariant: cells of the piece have this node");
+        [values[3 * place], values[3 * place + 1], values[3 * place + 2]]
     }
-}
-
-impl LocalCell {
-    fn gather(&self, values: &[f64], cell_values: &mut Vec<f64>) {
-        cell_values.clear();
-        self.nodes.iter().for_each(|&place| cell_values.extend_from_slice(&values[3 * place as usize..][..3]));
-        for tie in &self.ties {
-            let [tied, a, b] = tie.map(|node| 3 * usize::from(node));
-            (0..3).for_each(|axis| cell_values[tied + axis] += 0.5 * (cell_values[a + axis] + cell_values[b + axis]));
-        }
-    }
-
-    /// K ← Tᵀ K T for u = T û, in which tied nodes move with the mean of their ends; `matrix` is a lower triangle by
-    /// rows.
-    fn fold(&self, matrix: &mut [f64]) {
-        let size = 3 * self.nodes.len();
-        let at = |row: usize, column: usize| lower_start(row.max(column)) + row.min(column);
-        for tie in &self.ties {
-            let [tied, a, b] = tie.map(|node| 3 * usize::from(node));
-            for component in 0..3 {
-                let [tied, ends @ ..] = [tied, a, b].map(|first| first + component);
-                let column: Vec<f64> = (0..size).map(|row| matrix[at(row, tied)]).collect();
-                let own = column[tied];
-                for end in ends {
-                    for (row, entry) in column.iter().enumerate() {
-                        // The diagonal of an end takes its coupling with the tied node twice.
-                        matrix[at(row, end)] += if row == end { *entry } else { 0.5 * entry };
-                    }
-                }
-                let [a, b] = ends;
-                for (row, column) in [(a, a), (b, b), (a, b)] {
-                    matrix[at(row, column)] += 0.25 * own;
-                }
-            }
-        }
-    }
-}
-
-fn local_cell(solid: &Solid, nodes: &[u32], cell: usize) -> LocalCell {
-    let all = solid.mesh.cell(cell).nodes;
-    let place = |node: u32| all.iter().position(|other| *other == node).map_or(0, |place| place as u8);
-    let tie = |(index, &node): (usize, &u32)| solid.ends_of(node).map(|[a, b]| [index as u8, place(a), place(b)]);
-    let local = |node: &u32| narrow(nodes.binary_search(node).expect("invariant: taken from these cells"));
-    LocalCell { nodes: all.iter().map(local).collect(), ties: all.iter().enumerate().filter_map(tie).collect() }
 }
 
 impl PiecePattern {
-    fn new(cells: Vec<LocalCell>, points: Vec<[f64; 3]>, fixing: [usize; 3]) -> Self {
+    fn new(cells: Vec<Vec<u32>>, points: Vec<[f64; 3]>, fixing: [usize; 3]) -> Self {
         let mut graph = vec![Vec::new(); points.len()];
-        for LocalCell { nodes, .. } in &cells {
+        for nodes in &cells {
             nodes.iter().for_each(|&node| graph[node as usize].extend_from_slice(nodes));
         }
         fixing.iter().for_each(|&node| graph[node].extend(fixing.map(narrow)));
@@ -268,19 +186,28 @@ impl PiecePattern {
         (0..dimension).map(|column| values[starts[column]]).sum::<f64>() / dimension as f64
     }
 
+    /// The neighbours of every node.
+    pub(crate) fn graph(&self) -> &[Vec<u32>] {
+        &self.graph
+    }
+
     /// Elimination order of the dofs by nested dissection, with those of `last` nodes at the end.
     pub fn elimination_order(&self, last: &[usize]) -> Vec<usize> {
+        self.elimination_order_of(&self.graph, last)
+    }
+
+    fn elimination_order_of(&self, graph: &[Vec<u32>], last: &[usize]) -> Vec<usize> {
         let mut chained;
         let graph = if last.len() > 1 {
             // A chain keeps the last nodes in place in the elimination tree, whatever fill couples them.
-            chained = self.graph.clone();
+            chained = graph.to_vec();
             for pair in last.windows(2) {
                 chained[pair[0]].push(narrow(pair[1]));
                 chained[pair[1]].push(narrow(pair[0]));
             }
             &chained
         } else {
-            &self.graph
+            graph
         };
         let nodes = nested_dissection(&self.points, graph, last);
         nodes.into_iter().flat_map(|node| 3 * node..3 * node + 3).collect()
@@ -293,10 +220,22 @@ impl PiecePattern {
     pub fn symbolic(&self, last: &[usize]) -> Result<Arc<SymbolicFactor>, FactorizationError> {
         Ok(Arc::new(SymbolicFactor::new(Arc::clone(&self.lower), self.elimination_order(last))?))
     }
+
+    /// The symbolic factor of a matrix that couples more nodes, over its pattern and the neighbours of its nodes.
+    ///
+    /// # Errors
+    /// [`FactorizationError`] when the analysis fails.
+    pub(crate) fn symbolic_of(
+        &self,
+        (lower, graph): (&Arc<LowerPattern>, &[Vec<u32>]),
+        last: &[usize],
+    ) -> Result<Arc<SymbolicFactor>, FactorizationError> {
+        Ok(Arc::new(SymbolicFactor::new(Arc::clone(lower), self.elimination_order_of(graph, last))?))
+    }
 }
 
 /// The lower triangle over three dofs per node.
-fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
+pub(crate) fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
     let mut columns = Vec::with_capacity(3 * graph.len());
     for (node, neighbours) in graph.iter().enumerate() {
         let later = neighbours.iter().map(|&other| other as usize).filter(|&other| other > node);
@@ -307,9 +246,9 @@ fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
 }
 
 /// Positions of the lower entries of the matrix of a cell.
-fn scatter(cell: &LocalCell, lower: &LowerPattern) -> Vec<u32> {
-    let dof = |dof: usize| 3 * cell.nodes[dof / 3] as usize + dof % 3;
-    let size = 3 * cell.nodes.len();
+fn scatter(cell: &[u32], lower: &LowerPattern) -> Vec<u32> {
+    let dof = |dof: usize| 3 * cell[dof / 3] as usize + dof % 3;
+    let size = 3 * cell.len();
     let mut positions = Vec::with_capacity(lower_start(size));
     for row in 0..size {
         for column in 0..=row {

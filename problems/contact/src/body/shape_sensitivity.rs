@@ -30,7 +30,7 @@ pub fn position_sensitivities(
         }
     }
     let is_own = |cell: u32| piece.cells.binary_search(&cell).is_ok();
-    let p = |node: u32| piece.value_at(&body.solid, node, p);
+    let p = |node: u32| piece.value_at(node, p);
     for (node, value) in load_sensitivities(body, &is_own, positions, &p, &moves) {
         let sum = sensitivities.entry(node).or_default();
         (0..3).for_each(|axis| sum[axis] += value[axis]);

@@ -5,7 +5,7 @@
 //! ```
 //! B: the share of the body in the jumps of the packed rows: the weights of its nodes times the directions.
 
-use crate::body::{Body, Place};
+use crate::body::Body;
 use crate::direct::condensation::CondensedBody;
 use crate::equilibrium::modes::{OwnMotion, RigidScene};
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows};
@@ -54,9 +54,14 @@ pub struct ContactBody {
 
 impl CompliantBody {
     /// The compliance of a condensed body; the body at its positions is number `number` of a rigid scene.
-    pub fn new(condensed: CondensedBody, rigid: &RigidScene, number: usize, positions: &[[f64; 3]]) -> Self {
+    pub fn new(
+        condensed: CondensedBody,
+        (body, rigid): (&Body, &RigidScene),
+        number: usize,
+        positions: &[[f64; 3]],
+    ) -> Self {
         let (motions, coefficients): (Vec<Vec<f64>>, Vec<OwnMotion>) =
-            orthonormal(contact_motions(&condensed, rigid, number, positions)).into_iter().unzip();
+            orthonormal(contact_motions((&condensed, body), rigid, number, positions)).into_iter().unzip();
         let schur = &condensed.schur;
         let size = schur.nrows();
         let scale = (0..size).map(|dof| schur[(dof, dof)]).sum::<f64>() / size as f64;
@@ -103,7 +108,7 @@ impl BodyRows {
                 own.filter_map(|(side, weight)| Some((pattern.contact_place(side.node)?, *weight))).collect();
             for direction in &node.directions {
                 let entries = own.iter().flat_map(|&(place, weight)| {
-                    let turned = pattern.axes.turn_at(pattern.contact[place], *direction);
+                    let turned = pattern.coordinates.axes.turn_at(pattern.contact[place], *direction);
                     (0..3).map(move |axis| (3 * place + axis, weight * turned[axis]))
                 });
                 all.push(entries.filter(|(dof, value)| *value != 0.0 && !pattern.holds(*dof)).collect());
@@ -175,10 +180,10 @@ impl ContactBody {
 
     /// Displacements of the whole body along the axes under a load over it (0 at held dofs), from those of its contact
     /// dofs and packed multipliers.
-    pub(super) fn extend_under(&self, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
+    pub(super) fn extend_under(&self, body: &Body, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
         let condensed = &self.stiff().condensed;
         let mut u = condensed.extend(contact, &self.contact_forces(multipliers), load);
-        condensed.pattern.axes.turn_back(&mut u);
+        condensed.pattern.coordinates.displacements(&body.trace, &condensed.weights, &mut u);
         u
     }
 
@@ -197,7 +202,7 @@ type ContactMotion = (Vec<f64>, OwnMotion);
 
 /// The free motions of a body.
 fn contact_motions(
-    condensed: &CondensedBody,
+    (condensed, body): (&CondensedBody, &Body),
     rigid: &RigidScene,
     number: usize,
     positions: &[[f64; 3]],
@@ -205,8 +210,8 @@ fn contact_motions(
     let pattern = &condensed.pattern;
     let motion = |coefficients: OwnMotion| {
         let at = |&place: &usize| {
-            let point = positions[pattern.piece.nodes[place] as usize];
-            pattern.axes.turn_at(place, rigid.displacement(number, &coefficients, Place::Point(point)))
+            let point = body.trace.place(&condensed.weights, pattern.piece.nodes[place], positions);
+            pattern.coordinates.axes.turn_at(place, rigid.displacement(number, &coefficients, point))
         };
         let mut values: Vec<f64> = pattern.contact.iter().flat_map(at).collect();
         let dofs = values.iter_mut().enumerate().filter(|(dof, _)| pattern.holds(*dof));

@@ -5,10 +5,11 @@
 //! prescribed u_D:     u = u_D + v,  v = 0 at held dofs,  K v = (f − K u_D) − Bᵀλ;   forces and displacements: of v
 //! ```
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly. All is
-//! computed in the coordinates of [`NodalAxes`].
+//! computed in the [`Coordinates`] of the body.
 
 use crate::body::loads::piece_loads;
-use crate::body::{Body, NodalAxes, Piece};
+use crate::body::{Body, Piece, TraceWeights};
+use crate::direct::coordinates::Coordinates;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::dense::{DenseLu, multiply};
@@ -22,7 +23,7 @@ use std::sync::Arc;
 pub struct CondensationPattern {
     /// The whole body.
     pub(super) piece: Piece,
-    pub(super) axes: NodalAxes,
+    pub(super) coordinates: Coordinates,
     symbolic: Arc<SymbolicFactor>,
     /// The nodes in contact rows, ascending, by their places in the piece.
     pub(super) contact: Vec<usize>,
@@ -34,6 +35,8 @@ pub struct CondensationPattern {
 #[derive(Debug)]
 pub struct CondensedBody {
     pub(super) pattern: Arc<CondensationPattern>,
+    /// The trace of the body at the shape.
+    pub(super) weights: TraceWeights,
     /// S over contact dofs 3·node + component, N/mm.
     pub(crate) schur: Mat<f64>,
     pub(super) factor: NumericFactor,
@@ -49,8 +52,8 @@ impl CondensationPattern {
         let piece = body.whole();
         let known = contact.iter().filter_map(|&node| Some((node, piece.local(node)?)));
         let (contact_nodes, contact): (Vec<u32>, Vec<usize>) = known.unzip();
-        let symbolic = piece.pattern.symbolic(&contact)?;
-        Ok(Self { axes: NodalAxes::new(body, &piece), piece, symbolic, contact, contact_nodes })
+        let (coordinates, symbolic) = Coordinates::new(body, &piece, &contact)?;
+        Ok(Self { coordinates, piece, symbolic, contact, contact_nodes })
     }
 
     /// Condenses one shape.
@@ -59,9 +62,10 @@ impl CondensationPattern {
     /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite,
     /// [`ContactError::ResistsRigidMotions`].
     pub fn condense(self: &Arc<Self>, body: &Body, positions: &[[f64; 3]]) -> Result<CondensedBody, ContactError> {
-        let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
-        self.piece.check_kernel(&body.solid, &body.name, positions, &values)?;
-        self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
+        let stiffness = self.piece.assemble(&body.solid, positions, |material| *material);
+        self.piece.check_kernel(&body.name, positions, &stiffness)?;
+        let weights = body.trace.weights(positions);
+        let mut values = self.coordinates.matrix((body, &self.piece), &weights, stiffness);
         let shift = self.impose(&mut values);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
@@ -81,7 +85,7 @@ impl CondensationPattern {
         for dof in 0..size {
             schur[(dof, dof)] -= shift;
         }
-        Ok(CondensedBody { pattern: Arc::clone(self), schur, factor, shift })
+        Ok(CondensedBody { pattern: Arc::clone(self), weights, schur, factor, shift })
     }
 
     /// The place of a node of the mesh among the nodes in contact rows.
@@ -96,26 +100,26 @@ impl CondensationPattern {
 
     /// u_D, mm: what supports prescribe at held dofs, 0 at free ones.
     pub(super) fn lift(&self, body: &Body) -> Vec<f64> {
-        self.axes.lift(body, &self.piece)
+        self.coordinates.lift(body, &self.piece)
     }
 
     /// f − K u_D over the whole body, N, for its loads f and prescribed displacements u_D; 0 at held dofs.
     pub(super) fn loads(&self, body: &Body, positions: &[[f64; 3]], lift: &[f64]) -> Vec<f64> {
         let mut load = piece_loads(body, &self.piece, positions);
-        self.axes.turn(&mut load);
+        let weights = body.trace.weights(positions);
+        self.coordinates.forces(&body.trace, &weights, &mut load);
         self.balance(|| self.stiffness(body, positions), lift, load)
     }
 
-    /// K in the coordinates of the nodes.
+    /// K̂ in the coordinates of the body.
     fn stiffness(&self, body: &Body, positions: &[[f64; 3]]) -> Vec<f64> {
-        let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
-        self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
-        values
+        let values = self.piece.assemble(&body.solid, positions, |material| *material);
+        self.coordinates.matrix((body, &self.piece), &body.trace.weights(positions), values)
     }
 
     /// Decouples held dofs and adds the shift; returns the shift.
     fn impose(&self, values: &mut [f64]) -> f64 {
-        let (lower, held) = (&self.piece.pattern.lower, &self.axes.held);
+        let (lower, held) = (&self.coordinates.lower, &self.coordinates.axes.held);
         for column in 0..lower.dimension() {
             for position in lower.starts()[column] + 1..lower.starts()[column + 1] {
                 if held[column] || held[lower.rows()[position]] {
@@ -132,7 +136,7 @@ impl CondensationPattern {
         shift
     }
 
-    /// f − K v, N, for displacements v and forces f in the coordinates of the nodes; 0 at held dofs, which supports
+    /// f − K v, N, for displacements v and forces f in the coordinates of the body; 0 at held dofs, which supports
     /// carry.
     pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], v: &[f64], force: Vec<f64>) -> Mat<f64> {
         let rest = self.balance(|| self.stiffness(body, positions), v, force);
@@ -143,10 +147,14 @@ impl CondensationPattern {
     fn balance(&self, stiffness: impl FnOnce() -> Vec<f64>, v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
         if v.iter().any(|entry| *entry != 0.0) {
             let mut image = vec![0.0; v.len()];
-            self.piece.pattern.lower.multiply(&stiffness(), v, &mut image);
+            self.coordinates.lower.multiply(&stiffness(), v, &mut image);
             add_scaled(&mut force, -1.0, &image);
         }
-        force.iter_mut().zip(&self.axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
+        force
+            .iter_mut()
+            .zip(&self.coordinates.axes.held)
+            .filter(|(_, held)| **held)
+            .for_each(|(force, _)| *force = 0.0);
         force
     }
 
@@ -157,7 +165,7 @@ impl CondensationPattern {
 
     /// Whether supports hold a contact dof.
     pub(super) fn holds(&self, dof: usize) -> bool {
-        self.axes.held[3 * self.contact[dof / 3] + dof % 3]
+        self.coordinates.axes.held[3 * self.contact[dof / 3] + dof % 3]
     }
 }
 

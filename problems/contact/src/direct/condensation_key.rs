@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Condensed bodies that solvers share.
 pub type CondensedShelf = Shelf<CondensationKey, CompliantBody>;
 
-/// Mesh, materials, tied and contact nodes and held directions of a body: its stiffness, condensed. Neither loads nor
+/// Mesh, materials, trace, contact nodes and held directions of a body: its stiffness, condensed. Neither loads nor
 /// prescribed displacements are part of it.
 #[derive(Debug)]
 pub struct CondensationKey {
@@ -28,7 +28,8 @@ impl CondensationKey {
 impl PartialEq for CondensationKey {
     fn eq(&self, other: &Self) -> bool {
         let (own, others) = (&self.pattern, &other.pattern);
-        let solids = [&self.bodies[self.number].solid, &other.bodies[other.number].solid];
-        own.contact == others.contact && own.axes == others.axes && solids[0] == solids[1]
+        let bodies = [&self.bodies[self.number], &other.bodies[other.number]];
+        let is_equal = own.contact == others.contact && own.coordinates.axes == others.coordinates.axes;
+        is_equal && bodies[0].trace == bodies[1].trace && bodies[0].solid == bodies[1].solid
     }
 }

@@ -4,6 +4,7 @@
 //! l̂ = l_c − K_ci K_ii⁻¹ l_i,   u_c = C (f̂ − Bᵀλ) + N a   ⇒   l·du = l̂·du_c = −Σ_bodies (C l̂)·Bᵀdλ + (Nᵀ l̂)·da
 //! ```
 
+use crate::body::Body;
 use crate::direct::compliant_body::CompliantBody;
 use crate::linear::dense::multiply;
 use crate::linear::vector::dot;
@@ -24,9 +25,10 @@ pub(super) struct CondensedLoad {
 
 impl CondensedLoad {
     /// The load on a body, and its displacements, along the axes over its dofs.
-    pub(super) fn new(body: &CompliantBody, mut load: Vec<f64>, displacement: &[f64]) -> Self {
+    pub(super) fn new((own, body): (&Body, &CompliantBody), mut load: Vec<f64>, displacement: &[f64]) -> Self {
         let size = load.iter().zip(displacement).map(|(l, u)| (l * u).abs()).sum();
-        body.condensed.pattern.axes.free_forces(&mut load);
+        let condensed = &body.condensed;
+        condensed.pattern.coordinates.free_forces(&own.trace, &condensed.weights, &mut load);
         let condensed = body.condensed.condense_loads(Mat::from_fn(load.len(), 1, |dof, _| load[dof]));
         let contact = condensed.col_as_slice(0);
         let response = multiply(&body.compliance, contact);

@@ -27,7 +27,8 @@ pub(super) fn displacement_tangents(
     let mut displacements = vec![Vec::new(); count];
     let mut forces = forces.into_iter().peekable();
     for (number, body) in contact.bodies.iter().enumerate() {
-        let pattern = &body.stiff().condensed.pattern;
+        let condensed = &body.stiff().condensed;
+        let (pattern, weights) = (&condensed.pattern, &condensed.weights);
         let own = forces.next_if(|(shaped, _)| *shaped == number);
         let mut right = own.map_or_else(|| Mat::zeros(pattern.piece.dof_count(), count), |(_, forces)| forces);
         for column in 0..count {
@@ -38,15 +39,15 @@ pub(super) fn displacement_tangents(
             let right = right.col_as_slice_mut(column);
             for (index, &node) in pattern.contact.iter().enumerate() {
                 for dof in 3 * index..3 * index + 3 {
-                    right[3 * node + dof % 3] += turned[dof] + held[dof] + body.stiff().condensed.shift * u[dof];
+                    right[3 * node + dof % 3] += turned[dof] + held[dof] + condensed.shift * u[dof];
                 }
             }
         }
-        body.stiff().condensed.factor.solve_columns_in_place(&mut right);
+        condensed.factor.solve_columns_in_place(&mut right);
         for (column, all) in displacements.iter_mut().enumerate() {
             let u = right.col_as_slice_mut(column);
-            pattern.axes.turn_back(u);
-            all.extend(contact.problem.bodies[number].extended(&pattern.piece, u).into_flattened());
+            pattern.coordinates.displacements(&contact.problem.bodies[number].trace, weights, u);
+            all.extend_from_slice(u);
         }
     }
     displacements

@@ -18,7 +18,7 @@ impl DirectSolver {
         let solved = bodies.map(|(number, body)| SolvedBody {
             mesh: Arc::clone(&body.mesh),
             positions: first_of(&state.positions[number], body.mesh.node_count()),
-            displacement: body.extended(&self.patterns[number].piece, state.displacement(number)),
+            displacement: state.displacement(number).as_chunks::<3>().0.to_vec(),
             gluing_defect: 0.0,
             subdomains: vec![number; body.mesh.cell_count()],
         });
@@ -35,9 +35,11 @@ impl DirectState {
             let first: usize = sizes.take(number).sum();
             let body = &self.contact.bodies[number];
             let contact = &self.solution.displacement[first..first + body.load.free.len()];
-            let mut u = body.extend_under(contact, &self.solution.forces, &body.load.full);
+            let own = &self.contact.problem.bodies[number];
+            let mut u = body.extend_under(own, contact, &self.solution.forces, &body.load.full);
             let mut lift = body.load.lift.clone();
-            body.stiff().condensed.pattern.axes.turn_back(&mut lift);
+            let condensed = &body.stiff().condensed;
+            condensed.pattern.coordinates.displacements(&own.trace, &condensed.weights, &mut lift);
             add_scaled(&mut u, 1.0, &lift);
             u
         })

@@ -13,7 +13,8 @@ use crate::direct::solver::{DirectSolver, DirectState};
 use crate::direct::tangents::ShapeLoads;
 use crate::equilibrium::RowChange;
 use crate::equilibrium::problem::add_at;
-use crate::equilibrium::row_work::{NodeValues, changed_forces, row_approaches, row_sensitivities};
+use crate::equilibrium::row_work::{NodeValues, changed_forces, row_approaches, row_sensitivities, side_forces};
+use crate::equilibrium::trace_work::TraceWork;
 use crate::linear::vector::add_scaled;
 use crate::shape::Velocities;
 use faer::Mat;
@@ -47,18 +48,44 @@ impl DirectSolver {
         contact.rows.pull_back(&problem.boundary, &rows, moves, |body, node, sensitivity| {
             add_at(&mut result, problem.node_number(body, node), sensitivity);
         });
+        if let Some(work) = TraceWork::new(problem, &contact.rows, &state.positions) {
+            let own = (&problem.boundary, &*contact.rows);
+            let by_side = forces.map(|forces| side_forces(own, forces, problem.bodies.len()));
+            let adjoint = |body: usize, node: u32| {
+                let found = adjoint_displacements.iter().find(|(number, _)| *number == body);
+                found.map_or([0.0; 3], |(_, p)| entry(p, node))
+            };
+            let fields = [work.nodal(|body, node| entry(state.displacement(body), node)), work.nodal(adjoint)];
+            work.pull_back(by_side.each_ref(), fields.each_ref(), |body, node, sensitivity| {
+                add_at(&mut result, problem.node_number(body, node), sensitivity);
+            });
+        }
         result
     }
 
-    /// −∂(K u − f) over the bodies that controls shape, in the coordinates of their nodes, 0 at held dofs, N, one
+    /// −∂(K u − f) over the bodies that controls shape, in the coordinates of the bodies, 0 at held dofs, N, one
     /// column per field of velocities.
     pub(super) fn shape_forces(&self, state: &DirectState, velocities: &Velocities<'_>) -> Vec<(usize, Mat<f64>)> {
+        let (rows, bodies) = (&state.contact.rows, self.problem.bodies.len());
+        let changed: Vec<NodeValues> = match TraceWork::new(&self.problem, rows, &state.positions) {
+            Some(work) => {
+                let forces = side_forces((&self.problem.boundary, rows), &state.solution.forces, bodies);
+                let columns = 0..velocities.count();
+                columns.map(|column| work.forces(&work.changes(velocities, column), &forces)).collect()
+            }
+            None => Vec::new(),
+        };
         let of_body = |number: usize| {
             let (body, piece) = (&self.problem.bodies[number], &self.patterns[number].piece);
             let (positions, u) = (&state.positions[number], state.displacement(number));
             let mut forces = shape_forces((number, body), piece, positions, u, velocities);
-            let axes = &self.patterns[number].axes;
-            forces.iter_mut().for_each(|forces| axes.free_forces(forces));
+            for (forces, changed) in forces.iter_mut().zip(&changed) {
+                for (&node, force) in &changed.0[number] {
+                    add_scaled(&mut forces[3 * node as usize..][..3], 1.0, force);
+                }
+            }
+            let (coordinates, weights) = (&self.patterns[number].coordinates, &state.contact.rows.traces[number]);
+            forces.iter_mut().for_each(|forces| coordinates.free_forces(&body.trace, weights, forces));
             (number, Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof]))
         };
         self.problem.map.shaped_bodies().map(of_body).collect()
@@ -78,10 +105,14 @@ impl DirectSolver {
         let mut turned: Vec<Mat<f64>> = sizes.map(|size| Mat::zeros(size, velocities.count())).collect();
         let turns = !problem.geometry.is_fixed();
         let u = turns.then(|| node_values(contact, &state.contact_displacements()));
+        let work = TraceWork::new(problem, &contact.rows, &state.positions);
+        let nodal = work.map(|work| work.nodal(|body, node| entry(state.displacement(body), node)));
         let mut approaches = Vec::with_capacity(changes.len());
         for (column, changes) in changes.iter().enumerate() {
             let nodes = problem.boundary.points.iter().zip(&contact.rows.nodes).zip(changes);
-            approaches.push(nodes.flat_map(|(node, change)| row_approaches(node, change, u.as_ref())).collect());
+            let moved = work.zip(nodal.as_ref()).map(|(work, u)| work.moved(&work.changes(velocities, column), u));
+            let values = (u.as_ref(), moved.as_ref());
+            approaches.push(nodes.flat_map(|(node, change)| row_approaches(node, change, values)).collect());
             if turns {
                 add_turned_forces(contact, &state.solution.forces, changes, &mut turned, column);
             }
@@ -94,12 +125,17 @@ impl DirectSolver {
     }
 }
 
+/// The vector at a node of a body.
+fn entry(values: &[f64], node: u32) -> [f64; 3] {
+    std::array::from_fn(|axis| values[3 * node as usize + axis])
+}
+
 /// Vectors over the contact dofs of all bodies, along the axes at the nodes.
 fn node_values(contact: &CompliantContact, values: &[Vec<f64>]) -> NodeValues {
     let of_body = |(body, values): (&crate::direct::compliant_body::ContactBody, &Vec<f64>)| {
         let pattern = &body.stiff().condensed.pattern;
         let nodes = pattern.contact_nodes().iter().zip(&pattern.contact).zip(values.as_chunks::<3>().0);
-        nodes.map(|((&node, &place), own)| (node, pattern.axes.turn_back_at(place, *own))).collect()
+        nodes.map(|((&node, &place), own)| (node, pattern.coordinates.axes.turn_back_at(place, *own))).collect()
     };
     NodeValues(contact.bodies.iter().zip(values).map(of_body).collect())
 }
@@ -118,7 +154,7 @@ fn add_turned_forces(
         let pattern = &body.stiff().condensed.pattern;
         for (place, node) in pattern.contact_nodes().iter().enumerate() {
             let Some(force) = forces.get(node) else { continue };
-            let turned = pattern.axes.turn_at(pattern.contact[place], *force);
+            let turned = pattern.coordinates.axes.turn_at(pattern.contact[place], *force);
             for axis in (0..3).filter(|axis| !pattern.holds(3 * place + axis)) {
                 load[(3 * place + axis, column)] += turned[axis];
             }

@@ -112,7 +112,7 @@ impl DirectSolver {
             Some(known) => known,
             None => {
                 let condensed = self.patterns[number].condense(body, positions)?;
-                let factors = CompliantBody::new(condensed, rigid, number, positions);
+                let factors = CompliantBody::new(condensed, (body, rigid), number, positions);
                 let factored = Arc::new(Factored { positions: Arc::clone(positions), factors });
                 self.shelf.put(key, &factored);
                 factored
@@ -290,7 +290,8 @@ impl ContactSolver for DirectSolver {
         let extended = |body: usize| {
             let none = || vec![0.0; state.displacement(body).len()];
             let load = loads.get_mut(body).map_or_else(none, std::mem::take);
-            let p = state.contact.bodies[body].extend_under(&adjoint.displacements[body], &adjoint.multipliers, &load);
+            let (own, on_contact) = (&self.problem.bodies[body], &adjoint.displacements[body]);
+            let p = state.contact.bodies[body].extend_under(own, on_contact, &adjoint.multipliers, &load);
             (body, p)
         };
         let adjoint_displacements: Vec<(usize, Vec<f64>)> = self.problem.map.shaped_bodies().map(extended).collect();
@@ -391,9 +392,9 @@ impl DirectSolver {
             rest = others;
             let mut load = vec![0.0; piece.dof_count()];
             for (node, force) in own.as_chunks::<3>().0.iter().enumerate() {
-                piece.add_force(&body.solid, node as u32, *force, &mut load);
+                piece.add_force(node as u32, *force, &mut load);
             }
-            CondensedLoad::new(state.contact.bodies[number].stiff(), load, state.displacement(number))
+            CondensedLoad::new((body, state.contact.bodies[number].stiff()), load, state.displacement(number))
         };
         (0..self.patterns.len()).map(load).collect()
     }

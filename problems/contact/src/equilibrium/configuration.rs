@@ -29,8 +29,7 @@ impl Configuration {
     /// The configuration of given controls.
     ///
     /// # Errors
-    /// [`ContactError::InvertedElement`], [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`],
-    /// [`ContactError::TiedRotation`].
+    /// [`ContactError::InvertedElement`], [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`].
     pub fn new(problem: &ContactProblem, controls: &[f64]) -> Result<Self, ContactError> {
         Self::of(problem, problem.positions(controls)?)
     }
@@ -38,13 +37,12 @@ impl Configuration {
     /// The configuration of given positions.
     ///
     /// # Errors
-    /// [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`], [`ContactError::TiedRotation`].
+    /// [`ContactError::NoFoot`], [`ContactError::NoEquilibrium`].
     pub fn of(problem: &ContactProblem, positions: Positions) -> Result<Self, ContactError> {
         Stage::Equilibrium.enter()?;
         let mut rows = problem.rows(&positions)?;
         let rigid = problem.rigid_scene(&positions, &rows);
         let grounded = rigid.analyse(&problem.boundary)?;
-        rigid.check_arms()?;
         let prescribed = problem.largest_prescribed();
         if rigid.total_load() == 0.0 && prescribed == 0.0 {
             let size = |point: &ContactPoint| {

@@ -1,6 +1,6 @@
 //! From the positions of all nodes to the contact rows, contact by contact; areas with their derivatives.
 
-use crate::body::Body;
+use crate::body::{Body, TraceWeights};
 use crate::equilibrium::contact_part::{ContactPart, Counter};
 use crate::equilibrium::pair_rows::PairRows;
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, NodeRows};
@@ -16,12 +16,14 @@ use std::sync::Arc;
 pub struct ContactGeometry {
     /// The contacts, in the order of the scene.
     pub(crate) parts: Vec<ContactPart>,
+    /// Whether the numbers in weighted displacements change with the shape.
+    pub(crate) traces_change: bool,
 }
 
 impl ContactGeometry {
     /// Whether the rows have the same directions and weights for all shapes.
     pub fn is_fixed(&self) -> bool {
-        self.parts.iter().all(|part| part.is_fixed)
+        !self.traces_change && self.parts.iter().all(|part| part.is_fixed)
     }
 
     /// Whether areas of contact nodes change with the shape.
@@ -56,6 +58,8 @@ impl ContactGeometry {
         bodies: &[Body],
         positions: &[Arc<Vec<[f64; 3]>>],
     ) -> Result<ContactRows, ContactError> {
+        let traces: Vec<TraceWeights> =
+            bodies.iter().zip(positions).map(|(body, positions)| body.trace.weights(positions)).collect();
         let (mut nodes, mut pairs) = (Vec::with_capacity(boundary.points.len()), vec![None; self.parts.len()]);
         for contact in boundary.contacts() {
             let part = &self.parts[contact];
@@ -71,7 +75,7 @@ impl ContactGeometry {
                 }
             }
         }
-        Ok(ContactRows { nodes, pairs, contact_count: boundary.contact_points().len() })
+        Ok(ContactRows { nodes, pairs, traces, contact_count: boundary.contact_points().len() })
     }
 
     /// Adds sensitivities of the areas of the nodes that may open to those of the positions of nodes that move:

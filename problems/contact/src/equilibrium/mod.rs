@@ -27,6 +27,7 @@ mod solved_body;
 mod stage;
 mod state;
 mod status;
+pub(crate) mod trace_work;
 mod value_error;
 
 pub use crate::shape::Positions;

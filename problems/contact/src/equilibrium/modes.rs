@@ -6,7 +6,7 @@
 //! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
 //! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero).
 
-use crate::body::{MOTIONS, Place};
+use crate::body::{MOTIONS, rigid_motions};
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
 use nalgebra::{DMatrix, DVector};
@@ -25,9 +25,6 @@ const ROUNDING: f64 = 1e-15;
 
 /// Times the load or the forces of the fit that the forces which balance a load may sum up to.
 const MARGIN: f64 = 10.0;
-
-/// Length of an arm, relative to the size of the body, that is rounding: the middle node of a straight edge has none.
-const ARM_ROUNDING: f64 = 1e-10;
 
 /// What the rotations of a body refer to.
 #[derive(Debug, Clone, Copy)]
@@ -50,8 +47,8 @@ impl Frame {
     }
 
     /// Displacement of the six motions at a point.
-    pub(crate) fn motions(&self, place: Place) -> [[f64; 3]; MOTIONS] {
-        place.motions(self.centre, self.length)
+    pub(crate) fn motions(&self, point: [f64; 3]) -> [[f64; 3]; MOTIONS] {
+        rigid_motions(point, self.centre, self.length)
     }
 }
 
@@ -65,8 +62,6 @@ pub struct RigidScene {
     pub names: Vec<String>,
     /// Held directions: (body, point in mm, direction).
     pub held: Vec<(usize, [f64; 3], [f64; 3])>,
-    /// Arms of tied nodes, mm, with their body: a free rotation must not turn them.
-    pub arms: Vec<(usize, [f64; 3])>,
     /// Nodal loads: (body, point in mm, force in N).
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
     /// The rows of every contact node: the normal one, then the tangential ones; none where nothing lies opposite.
@@ -90,7 +85,7 @@ impl RigidScene {
     /// The work of a force on all motions.
     fn row(&self, &(body, point, force): &RowPart) -> DVector<f64> {
         let mut row = DVector::zeros(MOTIONS * self.frames.len());
-        for (mode, motion) in self.frames[body].motions(Place::Point(point)).iter().enumerate() {
+        for (mode, motion) in self.frames[body].motions(point).iter().enumerate() {
             row[MOTIONS * body + mode] = (0..3).map(|axis| motion[axis] * force[axis]).sum();
         }
         row
@@ -109,33 +104,9 @@ impl RigidScene {
         free.iter().map(|motion| std::array::from_fn(|mode| motion[mode])).collect()
     }
 
-    /// Refuses bodies with a free rotation that turns an arm: it would be no motion of the discrete body, and what
-    /// holds it would be an error of the discretisation.
-    ///
-    /// # Errors
-    /// [`ContactError::TiedRotation`].
-    pub(crate) fn check_arms(&self) -> Result<(), ContactError> {
-        for body in 0..self.frames.len() {
-            let arms = || self.arms.iter().filter(|(own, _)| *own == body).map(|(_, arm)| *arm);
-            let longest = arms().flatten().fold(0.0, |longest: f64, part| longest.max(part.abs()));
-            if longest <= ARM_ROUNDING * self.frames[body].length {
-                continue;
-            }
-            for motion in self.own_motions(body) {
-                let turned = |arm: [f64; 3]| self.displacement(body, &motion, Place::Arm(arm));
-                if arms().flat_map(turned).any(|moved| moved.abs() > ARM_ROUNDING) {
-                    let mut all = DVector::zeros(MOTIONS * self.frames.len());
-                    all.rows_mut(MOTIONS * body, MOTIONS).copy_from_slice(&motion);
-                    return Err(ContactError::TiedRotation { motion: self.describe(&all), arm: longest });
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// The work of a force on the six motions of a body.
     fn works(&self, body: usize, point: [f64; 3], force: [f64; 3]) -> [f64; MOTIONS] {
-        let motions = self.frames[body].motions(Place::Point(point));
+        let motions = self.frames[body].motions(point);
         motions.map(|motion| (0..3).map(|axis| motion[axis] * force[axis]).sum())
     }
 
@@ -165,8 +136,8 @@ impl RigidScene {
     }
 
     /// Displacement of a place of a body in one of its motions.
-    pub(crate) fn displacement(&self, body: usize, motion: &[f64], place: Place) -> [f64; 3] {
-        let basis = self.frames[body].motions(place);
+    pub(crate) fn displacement(&self, body: usize, motion: &[f64], point: [f64; 3]) -> [f64; 3] {
+        let basis = self.frames[body].motions(point);
         std::array::from_fn(|axis| basis.iter().zip(motion).map(|(basis, share)| basis[axis] * share).sum())
     }
 

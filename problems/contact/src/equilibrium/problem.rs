@@ -70,8 +70,11 @@ impl ContactProblem {
             CellShapes::new(&body.mesh, positions, &own.collect::<Vec<_>>())
         });
         let shapes = shapes.collect();
-        let start_rows = ContactRows { nodes: Vec::new(), pairs: Vec::new(), contact_count: 0 };
-        let (bodies, map, geometry) = (Arc::from(bodies), Arc::new(map), ContactGeometry { parts });
+        let start_rows = ContactRows::default();
+        let traces_change =
+            bodies.iter().enumerate().any(|(number, body)| map.shapes(number) && !body.trace.is_empty());
+        let geometry = ContactGeometry { parts, traces_change };
+        let (bodies, map): (Arc<[Body]>, _) = (Arc::from(bodies), Arc::new(map));
         let (contact_moduli, curved_faces) = (Vec::new(), curved.alone);
         let mut problem = Self {
             scene,
@@ -293,16 +296,18 @@ impl ContactProblem {
         let row = |(point, node): (&ContactPoint, &NodeRows), direction: &[f64; 3]| {
             let sides = point.sides.iter().zip(&node.weights).filter(|(_, weight)| **weight != 0.0);
             let part = |(side, weight): (&crate::equilibrium::Side, &f64)| {
-                (side.body, positions[side.body][side.node as usize], direction.map(|d| weight * d))
+                let (trace, positions) = (&self.bodies[side.body].trace, &positions[side.body]);
+                let place = trace.place(&rows.traces[side.body], side.node, positions);
+                (side.body, place, trace.projected(side.node, *direction).map(|d| weight * d))
             };
             sides.map(part).collect()
         };
         let contact = self.boundary.points.iter().zip(&rows.nodes);
-        let rows = |pair: (&ContactPoint, &NodeRows)| -> Vec<Vec<crate::equilibrium::modes::RowPart>> {
+        let of_node = |pair: (&ContactPoint, &NodeRows)| -> Vec<Vec<crate::equilibrium::modes::RowPart>> {
             let directions = pair.1.directions.iter().filter(|_| pair.1.is_covered);
             directions.map(|d| row(pair, d)).collect()
         };
-        let contact = contact.map(rows);
+        let contact = contact.map(of_node);
         let contact = contact.collect();
         let frame = |(number, positions): (usize, &Arc<Vec<[f64; 3]>>)| {
             let own = held.iter().filter(|(holder, ..)| *holder == number).map(|(_, point, _)| *point);
@@ -310,10 +315,7 @@ impl ContactProblem {
         };
         let frames = positions.iter().enumerate().map(frame).collect();
         let names = self.bodies.iter().map(|body| body.name.clone()).collect();
-        let arms = self.bodies.iter().zip(positions).enumerate();
-        let arms =
-            arms.flat_map(|(number, (body, positions))| body.solid.arms(positions).map(move |arm| (number, arm)));
-        RigidScene { names, held, arms: arms.collect(), loads, contact, frames }
+        RigidScene { names, held, loads, contact, frames }
     }
 
     /// The largest component of a displacement that supports prescribe, mm; 0 where they hold bodies at rest.
@@ -380,7 +382,7 @@ fn maps(scene: &Scene, bodies: &[Body], points: &[Vec<MiddlePoint>]) -> Result<V
             let base = body.mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
             Ok(BodyMap { base, middles: points.len(), controls: 0, rows: Vec::new() })
         }
-        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, points, |node| body.supported(node)),
+        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, points, |node| body.held(node)),
         (Some(ShapeScene::Heights(heights)), Geometry::Block(block)) => {
             Ok(height_map(&heights.surface()?, block, heights.face).with_middles(points))
         }

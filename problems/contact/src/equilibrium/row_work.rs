@@ -20,7 +20,12 @@ impl NodeValues {
     }
 
     fn at(&self, side: &Side) -> [f64; 3] {
-        self.0[side.body].get(&side.node).copied().unwrap_or_default()
+        self.of(side.body, side.node)
+    }
+
+    /// The vector at a node of a body.
+    pub(crate) fn of(&self, body: usize, node: u32) -> [f64; 3] {
+        self.0[body].get(&node).copied().unwrap_or_default()
     }
 
     /// Σ_sides weight · vector.
@@ -34,7 +39,11 @@ impl NodeValues {
     }
 
     fn add(&mut self, side: &Side, vector: [f64; 3]) {
-        let own = self.0[side.body].entry(side.node).or_insert([0.0; 3]);
+        self.add_to(side.body, side.node, vector);
+    }
+
+    pub(crate) fn add_to(&mut self, body: usize, node: u32, vector: [f64; 3]) {
+        let own = self.0[body].entry(node).or_insert([0.0; 3]);
         (0..3).for_each(|axis| own[axis] += vector[axis]);
     }
 }
@@ -61,14 +70,19 @@ pub(crate) fn row_sensitivities(
     boundary.points.iter().zip(&rows.nodes).map(of_node).collect()
 }
 
-/// ∂B u − ∂gap over the rows of a node; `u`: displacements, where the rows turn or their weights change.
+/// ∂B u − ∂gap over the rows of a node; `u`: displacements, where the rows turn or their weights change, and `moved`
+/// what the changes of weighted displacements add to them.
 pub(crate) fn row_approaches(
     (point, node): (&ContactPoint, &NodeRows),
     change: &RowChange,
-    u: Option<&NodeValues>,
+    (u, moved): (Option<&NodeValues>, Option<&NodeValues>),
 ) -> Vec<f64> {
     let mut approaches = vec![0.0; point.row_count()];
     approaches[0] -= change.gap;
+    if let Some(moved) = moved {
+        let jump = moved.jump(point, &node.weights);
+        approaches.iter_mut().zip(&node.directions).for_each(|(approach, d)| *approach += dot(d, jump));
+    }
     if let Some(u) = u {
         let (jump, moved) = (u.jump(point, &node.weights), u.jump(point, &change.weights));
         for ((approach, turned), d) in approaches.iter_mut().zip(&change.directions).zip(&node.directions) {
@@ -76,6 +90,23 @@ pub(crate) fn row_approaches(
         }
     }
     approaches
+}
+
+/// −Σ_r λ_r w d_r at the sides of all rows.
+pub(crate) fn side_forces(
+    (boundary, rows): (&ContactBoundary, &ContactRows),
+    lambda: &[f64],
+    bodies: usize,
+) -> NodeValues {
+    let mut forces = NodeValues::zeros(bodies);
+    for (point, node) in boundary.points.iter().zip(&rows.nodes) {
+        let sum = |axis: usize| -point.rows().zip(&node.directions).map(|(row, d)| lambda[row] * d[axis]).sum::<f64>();
+        let force: [f64; 3] = std::array::from_fn(sum);
+        for (side, weight) in point.sides.iter().zip(&node.weights).filter(|(_, weight)| **weight != 0.0) {
+            forces.add(side, force.map(|f| weight * f));
+        }
+    }
+    forces
 }
 
 /// −Σ_r λ_r ∂(w d_r) at the nodes of all rows.

@@ -1,17 +1,20 @@
 //! The contact rows at one shape, and their derivatives; those of a node stand in [`node_rows`](super::node_rows).
 
+use crate::body::{Body, TraceWeights};
 use crate::equilibrium::node_rows::{NodeRows, RowChange, RowSensitivities, dot};
 use crate::equilibrium::pair_rows::PairRows;
-use crate::equilibrium::{ContactBoundary, ContactStatus};
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactStatus};
 use crate::shape::Velocities;
 
 /// The rows of all contact nodes at a shape, in the order of [`ContactBoundary::points`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ContactRows {
     /// The rows of every node.
     pub nodes: Vec<NodeRows>,
     /// What the rows of every contact between bodies are computed from; none for obstacles.
     pub(crate) pairs: Vec<Option<PairRows>>,
+    /// The numbers in the weighted displacements of every body.
+    pub(crate) traces: Vec<TraceWeights>,
     /// Number of nodes that may open, which come first.
     pub(crate) contact_count: usize,
 }
@@ -90,6 +93,17 @@ impl ContactRows {
             approaches[point.start] -= node.gap;
         }
         approaches
+    }
+
+    /// The jump of a contact node by what supports prescribe to the middle nodes in its weighted displacements, mm.
+    pub(crate) fn prescribed_by_trace(&self, (point, node): (&ContactPoint, &NodeRows), bodies: &[Body]) -> [f64; 3] {
+        let mut jump = [0.0; 3];
+        for (side, weight) in point.sides.iter().zip(&node.weights) {
+            let (body, prescribed) = (&bodies[side.body], |node: u32| bodies[side.body].prescribed(node));
+            let moved = body.trace.value(&self.traces[side.body], side.node, &prescribed);
+            (0..3).for_each(|axis| jump[axis] += weight * (moved[axis] - side.prescribed[axis]));
+        }
+        jump
     }
 
     /// Initial gaps of all nodes, mm; 0 where they are glued.

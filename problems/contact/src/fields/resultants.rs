@@ -113,13 +113,8 @@ fn of_body(
     }
     for (node, force) in contact_forces(problem, number, contact) {
         add(&mut contacts, 1.0, force);
-        add(&mut rest[node as usize], -1.0, force);
-    }
-    for node in 0..rest.len() {
-        for end in body.solid.ends_of(node as u32).into_iter().flatten() {
-            let tied = rest[node];
-            add(&mut rest[end as usize], 0.5, tied);
-        }
+        let (trace, weights) = (&body.trace, &contact.0.traces[number]);
+        trace.spread(weights, node, force, &mut |node, share| add(&mut rest[node as usize], -1.0, share));
     }
     let friction_of_held = friction_of_held(problem, number, contact);
     let supports = &problem.scene.bodies[number].supports;
@@ -150,7 +145,7 @@ fn internal_forces(body: &Body, solved: &SolvedBody) -> Vec<[f64; 3]> {
     sums
 }
 
-/// Contact forces on the nodes of a body, N.
+/// Contact forces on the weighted displacements of the nodes of a body, N.
 fn contact_forces<'a>(
     problem: &'a ContactProblem,
     number: usize,

@@ -93,41 +93,80 @@ fn held(scene: &Scene) -> Vec<[bool; 3]> {
     held
 }
 
-/// Middle nodes of the contact face with the ends of their edges.
-fn ties(scene: &Scene) -> BTreeMap<u32, [u32; 2]> {
+/// The facets of the contact face with middle nodes.
+fn facets(scene: &Scene) -> Vec<Vec<u32>> {
     let mesh = mesh_of(scene);
-    let mut ties = BTreeMap::new();
-    for &face in &mesh.faces()[&scene.contacts[0].slave.face] {
-        let nodes: Vec<u32> = mesh.face_nodes(face).collect();
-        if nodes.len() == 6 {
-            ties.extend((0..3).map(|edge| (nodes[3 + edge], [nodes[edge], nodes[(edge + 1) % 3]])));
-        }
-    }
-    ties
+    let faces = mesh.faces()[&scene.contacts[0].slave.face].iter();
+    faces.map(|&face| mesh.face_nodes(face).collect()).filter(|nodes: &Vec<u32>| nodes.len() == 6).collect()
 }
 
-/// Forces that are left at every node, f − ∫σ∇N: those of middle nodes of the contact face are shared by the ends of
-/// their edges, between which displacements are linear; no component that a support holds. And by how far middle nodes
-/// are away from the middle, over the largest displacement.
-fn rest(scene: &Scene, positions: &[Point], u: &[Point]) -> (Vec<Point>, f64) {
+/// Middle nodes of the contact face with the ends of their edges.
+fn middles(scene: &Scene) -> BTreeMap<u32, [u32; 2]> {
+    let edges = |nodes: Vec<u32>| (0..3).map(move |edge| (nodes[3 + edge], [nodes[edge], nodes[(edge + 1) % 3]]));
+    facets(scene).into_iter().flat_map(edges).collect()
+}
+
+/// ∫ψ_j 4λ_a λ_b / ∫ψ_j by quadrature over the plane facets of the corners, by corner and middle node; ψ = 4λ − 1.
+fn weights(scene: &Scene, positions: &[Point]) -> BTreeMap<(u32, u32), f64> {
+    // The square, whose side x = 1 becomes a point, with Gauss points in each direction.
+    let gauss = [(0.5 - 0.15_f64.sqrt(), 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + 0.15_f64.sqrt(), 5.0 / 18.0)];
+    let mut sums: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+    let mut whole: BTreeMap<u32, f64> = BTreeMap::new();
+    for nodes in facets(scene) {
+        let [x, y, z] = [0, 1, 2].map(|corner| positions[nodes[corner] as usize]);
+        let area = norm(cross(plus(y, -1.0, x), plus(z, -1.0, x)));
+        for ((s, first), (t, second)) in gauss.iter().flat_map(|a| gauss.iter().map(move |b| (*a, *b))) {
+            let (lambda, weight) = ([s, t * (1.0 - s), (1.0 - t) * (1.0 - s)], first * second * (1.0 - s) * area);
+            for corner in 0..3 {
+                let psi = 4.0 * lambda[corner] - 1.0;
+                *whole.entry(nodes[corner]).or_insert(0.0) += weight * psi;
+                for edge in 0..3 {
+                    let value = 4.0 * lambda[edge] * lambda[(edge + 1) % 3];
+                    *sums.entry((nodes[corner], nodes[3 + edge])).or_insert(0.0) += weight * psi * value;
+                }
+            }
+        }
+    }
+    sums.into_iter().map(|((corner, middle), sum)| ((corner, middle), sum / whole[&corner])).collect()
+}
+
+/// Values at corners, to which those at middle nodes less the mean of the ends are added with their weights, along the
+/// components that supports leave free.
+fn weighted(scene: &Scene, positions: &[Point], values: &[Point]) -> Vec<Point> {
+    let (mut sums, held, ends) = (values.to_vec(), held(scene), middles(scene));
+    for ((corner, middle), weight) in weights(scene, positions) {
+        let [a, b] = ends[&middle].map(|end| values[end as usize]);
+        let own = plus(plus(values[middle as usize], -0.5, a), -0.5, b);
+        (0..3)
+            .filter(|&axis| !held[corner as usize][axis])
+            .for_each(|axis| sums[corner as usize][axis] += weight * own[axis]);
+    }
+    sums
+}
+
+/// Forces that are left at every node, f − ∫σ∇N, at corners of the contact face with half of those of the middle nodes
+/// of their edges; what contact forces at corners put on middle nodes is taken off there. No component that a support
+/// holds.
+fn rest(scene: &Scene, positions: &[Point], u: &[Point]) -> Vec<Point> {
     let material = scene.bodies[0].material;
     let constants = [material.young_modulus(), material.poisson_ratio()];
     let internal = internal_forces(mesh_of(scene), positions, u, constants);
     let loads = loads(scene, positions);
     let mut rest: Vec<Point> = loads.iter().zip(internal).map(|(load, own)| plus(*load, -1.0, own)).collect();
-    let size = u.iter().map(|u| norm(*u)).fold(0.0, f64::max);
-    let mut away = 0.0_f64;
-    for (middle, [a, b]) in ties(scene) {
-        let [middle, a, b] = [middle, a, b].map(|node| node as usize);
-        let mean: Point = std::array::from_fn(|axis| 0.5 * (u[a][axis] + u[b][axis]));
-        away = away.max(norm(plus(u[middle], -1.0, mean)) / size);
-        let share = std::mem::take(&mut rest[middle]);
-        [a, b].into_iter().for_each(|end| rest[end] = plus(rest[end], 0.5, share));
+    for (middle, ends) in middles(scene) {
+        let own = rest[middle as usize];
+        ends.into_iter().for_each(|end| rest[end as usize] = plus(rest[end as usize], 0.5, own));
     }
     for (rest, held) in rest.iter_mut().zip(held(scene)) {
         (0..3).filter(|&axis| held[axis]).for_each(|axis| rest[axis] = 0.0);
     }
-    (rest, away)
+    for ((corner, middle), weight) in weights(scene, positions) {
+        rest[middle as usize] = plus(rest[middle as usize], -weight, rest[corner as usize]);
+    }
+    for (rest, held) in rest.iter_mut().zip(held(scene)) {
+        (0..3).filter(|&axis| held[axis]).for_each(|axis| rest[axis] = 0.0);
+    }
+    rest
 }
 
 /// By how much a state at some positions of the nodes violates the equations of its scene.
@@ -137,10 +176,11 @@ pub fn violation(shape: &ContactShape, state: &ContactState) -> Violation {
     let obstacle = scene.contacts[0].obstacle().unwrap();
     let bodies = shape.bodies(state).unwrap();
     let (positions, u) = (&bodies[0].positions[..], &bodies[0].displacement[..]);
-    let (rest, away) = rest(scene, positions, u);
+    let rest = rest(scene, positions, u);
+    let weighted = weighted(scene, positions, u);
     let largest = |vectors: &[Point]| vectors.iter().map(|x| norm(*x)).fold(0.0, f64::max);
     let (force, length) = (largest(&rest).max(largest(&loads(scene, positions))), largest(u));
-    let mut found = Violation { equilibrium: away, ..Violation::default() };
+    let mut found = Violation::default();
     let held = held(scene);
     let contact: BTreeSet<u32> = problem.boundary.points.iter().map(|point| point.node).collect();
     for node in (0..rest.len()).filter(|node| !contact.contains(&(*node as u32))) {
@@ -154,9 +194,9 @@ pub fn violation(shape: &ContactShape, state: &ContactState) -> Violation {
         let normal = dot(across, rest[node]) / dot(across, across);
         // Where friction may act, the force along the directions that are free; supports carry the rest.
         let tangential = plus(rest[node], -normal, across);
-        let left = dot(row.normal, u[node]) - row.gap;
+        let left = dot(row.normal, weighted[node]) - row.gap;
         let along = |x: Point| plus(x, -dot(across, x) / dot(across, across), across);
-        let slip = along(free(u[node]));
+        let slip = along(free(weighted[node]));
         let [normal_here, tangential_here] = [
             state.forces.normal[index],
             state.forces.tangential.get(index).map_or(0.0, |own| norm(plus(*own, -1.0, tangential))),

@@ -5,9 +5,10 @@
 //! ```
 
 use crate::body::shape_sensitivity::position_sensitivities;
+use crate::equilibrium::ContactRows;
 use crate::equilibrium::problem::add_at;
-use crate::equilibrium::row_work::row_sensitivities;
-use crate::equilibrium::{ContactRows, RowSensitivities};
+use crate::equilibrium::row_work::{row_sensitivities, side_forces};
+use crate::equilibrium::trace_work::TraceWork;
 use crate::shape::Positions;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
 use crate::tfeti::torn::{RowVector, TornModel, TornVector};
@@ -48,23 +49,26 @@ pub fn shape_derivative(model: &TornModel, shape: SolvedShape<'_>, adjoint: &Tor
         add_at(&mut result, *node as usize, *sums);
     }
     let moves = |body: usize, node: u32| map.moves(body, node);
-    let rows = sensitivities_of_rows(model, shape, adjoint);
+    let changes = !problem.geometry.is_fixed();
+    let nodal = changes.then(|| [shape.displacement, &adjoint.displacement].map(|u| model.contact_displacements(u)));
+    let physical = |rows: &RowVector| -> Vec<f64> {
+        let scales = model.constraints.contact_scales(&problem.boundary);
+        rows.contact().iter().zip(scales).map(|(row, nu)| row / nu).collect()
+    };
+    let (lambda, eta) = (physical(shape.multipliers), physical(&adjoint.multipliers));
+    let weighted = nodal.as_ref().map(|fields| fields.each_ref().map(|u| model.weighted(shape.rows, u)));
+    let fields = weighted.as_ref().map(|[u, p]| [u, p]);
+    let rows = row_sensitivities((&problem.boundary, shape.rows), [&lambda, &eta], fields);
     shape.rows.pull_back(&problem.boundary, &rows, moves, |body, node, sensitivity| {
         add_at(&mut result, problem.node_number(body, node), sensitivity);
     });
+    let work = TraceWork::new(problem, shape.rows, shape.positions);
+    if let Some((work, [u, p])) = work.zip(nodal.as_ref()) {
+        let own = (&problem.boundary, shape.rows);
+        let by_side = [&lambda, &eta].map(|forces| side_forces(own, forces, problem.bodies.len()));
+        work.pull_back(by_side.each_ref(), [u, p], |body, node, sensitivity| {
+            add_at(&mut result, problem.node_number(body, node), sensitivity);
+        });
+    }
     result
-}
-
-/// ∂J/∂(directions, weights and gap) of every contact node.
-fn sensitivities_of_rows(model: &TornModel, shape: SolvedShape<'_>, adjoint: &TornAdjoint) -> Vec<RowSensitivities> {
-    let boundary = &model.problem.boundary;
-    let physical = |rows: &RowVector| -> Vec<f64> {
-        rows.contact().iter().zip(model.constraints.contact_scales(boundary)).map(|(row, nu)| row / nu).collect()
-    };
-    let (lambda, eta) = (physical(shape.multipliers), physical(&adjoint.multipliers));
-    let changes = !model.problem.geometry.is_fixed();
-    let displacements =
-        changes.then(|| [shape.displacement, &adjoint.displacement].map(|u| model.contact_displacements(u)));
-    let displacements = displacements.as_ref().map(|[u, p]| [u, p]);
-    row_sensitivities((boundary, shape.rows), [&lambda, &eta], displacements)
 }

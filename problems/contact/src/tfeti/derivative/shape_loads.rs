@@ -8,7 +8,8 @@
 use crate::body::MOTIONS;
 use crate::body::shape_force::shape_forces;
 use crate::equilibrium::RowChange;
-use crate::equilibrium::row_work::changed_forces;
+use crate::equilibrium::row_work::{changed_forces, side_forces};
+use crate::equilibrium::trace_work::TraceWork;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
 use crate::linear::real::Real;
 use crate::shape::Velocities;
@@ -51,13 +52,19 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
         if !model.problem.geometry.is_fixed() {
             let scales = model.constraints.contact_scales(&model.problem.boundary);
             let lambda: Vec<f64> = shape.multipliers.contact().iter().zip(scales).map(|(row, nu)| row / nu).collect();
+            let (rows, bodies) = ((&model.problem.boundary, shape.rows), model.problem.bodies.len());
+            let work = TraceWork::new(&model.problem, shape.rows, shape.positions);
+            let sides = work.map(|work| (work, side_forces(rows, &lambda, bodies)));
             for (column, changes) in changes.iter().enumerate() {
-                let rows = (&model.problem.boundary, shape.rows);
-                let vectors = changed_forces(rows, &lambda, changes, model.problem.bodies.len());
-                model.spread_contact(&vectors, |dof, force| {
+                let changed = changed_forces(rows, &lambda, changes, bodies);
+                let mut add = |dof: usize, force: f64| {
                     let sum = forces[dof].get(column) + force;
                     forces[dof].set(column, sum);
-                });
+                };
+                model.spread_contact(&model.nodal_forces(shape.rows, &changed), &mut add);
+                if let Some((work, sides)) = &sides {
+                    model.spread_contact(&work.forces(&work.changes(velocities, column), sides), &mut add);
+                }
             }
         }
         let mut resultants = vec![Row::<E, N>::ZERO; MOTIONS * system.parts.len()];

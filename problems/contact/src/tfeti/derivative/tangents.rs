@@ -12,7 +12,8 @@
 
 use crate::body::MOTIONS;
 use crate::equilibrium::law::{Friction, Linearization};
-use crate::equilibrium::row_work::row_approaches;
+use crate::equilibrium::row_work::{NodeValues, row_approaches};
+use crate::equilibrium::trace_work::TraceWork;
 use crate::equilibrium::{Positions, RowChange, Tangents};
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
@@ -20,6 +21,7 @@ use crate::linear::entry::{Entry, LANES, Row};
 use crate::linear::gcr::gcr;
 use crate::linear::real::Real;
 use crate::linear::vector::add_scaled;
+use crate::shape::Velocities;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
@@ -154,7 +156,7 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         let of_column = |column| shape.rows.changes(contact.boundary, &velocities, column);
         let rows: Vec<Vec<RowChange>> = (0..changes.len()).map(of_column).collect();
         let loads = ShapeLoads::new(operator.model, operator.system, shape, &velocities, &rows);
-        let approaches = approaches(operator.model, shape, &rows);
+        let approaches = approaches(operator.model, shape, &velocities, &rows);
         Self { contact, active, loads, approaches, count: changes.len() }
     }
 
@@ -344,16 +346,23 @@ impl<D, const N: usize> TangentIterate<D, N> {
 fn approaches<E: Real, const N: usize>(
     model: &TornModel,
     shape: SolvedShape<'_>,
+    velocities: &Velocities<'_>,
     changes: &[Vec<RowChange>],
 ) -> Vec<Row<E, N>> {
     let boundary = &model.problem.boundary;
     let mut approaches = vec![Row::ZERO; boundary.row_count];
     let turned = !model.problem.geometry.is_fixed();
-    let u = turned.then(|| model.contact_displacements(shape.displacement));
+    let nodal = turned.then(|| model.contact_displacements(shape.displacement));
+    let u = nodal.as_ref().map(|nodal| model.weighted(shape.rows, nodal));
+    let work = TraceWork::new(&model.problem, shape.rows, shape.positions).zip(nodal.as_ref());
+    let moved: Vec<Option<NodeValues>> = (0..changes.len())
+        .map(|column| work.map(|(work, nodal)| work.moved(&work.changes(velocities, column), nodal)))
+        .collect();
     let nodes = boundary.points.iter().zip(&shape.rows.nodes).zip(&model.constraints.normalisation);
     for (index, ((point, rows), nu)) in nodes.enumerate() {
         for (column, change) in changes.iter().map(|nodes| &nodes[index]).enumerate() {
-            for (row, approach) in point.rows().zip(row_approaches((point, rows), change, u.as_ref())) {
+            let values = (u.as_ref(), moved[column].as_ref());
+            for (row, approach) in point.rows().zip(row_approaches((point, rows), change, values)) {
                 approaches[row].set(column, approach / nu);
             }
         }

@@ -11,7 +11,7 @@
 //!
 //! References: \[KlawonnRheinbach2010\], \[RihaBrzobohatyMarkopoulosMecaKozubek2016\].
 
-use crate::body::{MOTIONS, Place};
+use crate::body::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::dense::{DenseLu, multiply_columns};
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
@@ -46,7 +46,7 @@ struct MemberFactors {
 const SINGULAR: f64 = 1e-12;
 
 /// Amplitudes of the six rigid motions of a cluster along the orthonormal modes of its subdomains, orthonormal.
-fn motions(coordinates: &[Vec<Place>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>> {
+fn motions(coordinates: &[Vec<[f64; 3]>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>> {
     let whole = orthonormal_modes(&coordinates.concat());
     let amplitudes = |motion: &Vec<f64>| {
         let mut first = 0;
@@ -82,7 +82,7 @@ fn held(motions: &[Vec<f64>]) -> Mat<f64> {
 }
 
 /// Whether the rows of a cluster leave it no more than the six rigid motions; `coordinates` of its nodes.
-pub fn moves_as_one_body(rows: &ClusterRows, coordinates: &[Vec<Place>]) -> bool {
+pub fn moves_as_one_body(rows: &ClusterRows, coordinates: &[Vec<[f64; 3]>]) -> bool {
     let modes: Vec<Vec<Vec<f64>>> = coordinates.iter().map(|nodes| orthonormal_modes(nodes)).collect();
     let modes: Vec<&[Vec<f64>]> = modes.iter().map(Vec::as_slice).collect();
     let rigid = rigid_rows(rows, &modes);
@@ -98,7 +98,7 @@ impl ClusterFactors {
     pub fn new(
         rows: &ClusterRows,
         parts: &[Arc<SubdomainFactors>],
-        coordinates: &[Vec<Place>],
+        coordinates: &[Vec<[f64; 3]>],
         stiffness: f64,
     ) -> Result<Self, ContactError> {
         let modes: Vec<&[Vec<f64>]> = parts.iter().map(|part| part.modes.as_slice()).collect();
@@ -232,7 +232,7 @@ mod tests {
     use crate::tfeti::torn::scene_rows;
 
     /// Two bricks side by side along the first axis, glued at some of the four nodes between them.
-    fn two_bricks(glued: &[usize]) -> (ClusterRows, Vec<Vec<Place>>) {
+    fn two_bricks(glued: &[usize]) -> (ClusterRows, Vec<Vec<[f64; 3]>>) {
         let corner = |node: usize| [node & 1, (node >> 1) & 1, node >> 2].map(|index| index as f64);
         let first: Vec<[f64; 3]> = (0..8).map(corner).collect();
         let second: Vec<[f64; 3]> = first.iter().map(|[x, y, z]| [x + 1.0, *y, *z]).collect();
@@ -240,8 +240,7 @@ mod tests {
         let row =
             |node: usize| (0..3).map(move |c| vec![(3 * (2 * node + 1) + c, half), (24 + 3 * 2 * node + c, -half)]);
         let rows: Vec<scene_rows::SparseRow> = glued.iter().flat_map(|&node| row(node)).collect();
-        let places = |points: Vec<[f64; 3]>| points.into_iter().map(Place::Point).collect();
-        (ClusterRows::new(&rows, &[0, 24, 48]), vec![places(first), places(second)])
+        (ClusterRows::new(&rows, &[0, 24, 48]), vec![first, second])
     }
 
     #[test]

@@ -100,12 +100,13 @@ impl Constraints {
         let nodes: Vec<HashSet<u32>> = cells.iter().map(|cells| cells.keys().copied().collect()).collect();
         let all = SceneRows::new((bodies, &nodes), &copies, numbering, &subdomains, &joints);
         let points = boundary.points.iter().zip(&start.nodes);
-        let contact: Vec<ContactNode> =
-            points.map(|(point, rows)| ContactNode::new((point, &rows.weights), bodies, &copies, &cells)).collect();
+        let contact: Vec<ContactNode> = points
+            .map(|(point, rows)| ContactNode::new((point, rows), (bodies, &start.traces), &copies, &cells))
+            .collect();
         let dofs: Vec<Vec<usize>> = contact
             .iter()
             .zip(boundary.points.iter().zip(&start.nodes))
-            .map(|(node, (point, rows))| node.dofs(&possible_directions(point, &rows.directions, are_fixed)))
+            .map(|(node, (point, rows))| node.dofs(bodies, &possible_directions(point, &rows.directions, are_fixed)))
             .collect();
         let owner = |dofs: &Vec<usize>| dofs.iter().min().map_or(0, |dof| numbering.owner(*dof));
         let node_owners: Vec<usize> = dofs.iter().map(owner).collect();
@@ -147,9 +148,14 @@ impl Constraints {
     }
 
     /// B and B_D with the contact rows of a shape.
-    pub fn rows_of(&self, rows: &ContactRows, interface: &Interface, distribution: &Distribution) -> TornRows {
+    pub fn rows_of(
+        &self,
+        (bodies, rows): (&[Body], &ContactRows),
+        interface: &Interface,
+        distribution: &Distribution,
+    ) -> TornRows {
         let (owned, own) = (distribution.owned(), interface.owned_count());
-        let contact = contact_rows(&self.contact, rows);
+        let contact = contact_rows(&self.contact, bodies, rows);
         let place = |(dof, value): &(usize, f64)| interface.place(*dof).map(|place| (place, *value));
         let matrices = |kind: usize| {
             let within = |row: &[SparseRow; 2]| -> SparseRow { row[kind].iter().filter_map(place).collect() };

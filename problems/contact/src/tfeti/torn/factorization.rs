@@ -1,6 +1,5 @@
 //! Factorisation of the bodies of a torn scene at one shape.
 
-use crate::body::Place;
 use crate::body::loads::piece_loads;
 use crate::equilibrium::Configuration;
 use crate::error::ContactError;
@@ -117,11 +116,8 @@ impl TornModel {
         let own = own.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body);
         let join = |cluster: usize| {
             let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
-            let places = |index: usize| {
-                let (body, piece) = self.piece(index);
-                piece.places(&body.solid, positions).collect::<Vec<Place>>()
-            };
-            let coordinates: Vec<Vec<Place>> = members.clone().map(places).collect();
+            let places = |index: usize| self.piece(index).1.positions(positions).collect::<Vec<[f64; 3]>>();
+            let coordinates: Vec<Vec<[f64; 3]>> = members.clone().map(places).collect();
             let first = parts.partition_point(|(index, _)| *index < members.start);
             let parts: Vec<Arc<SubdomainFactors>> =
                 parts[first..first + members.len()].iter().map(|(_, part)| Arc::clone(part)).collect();

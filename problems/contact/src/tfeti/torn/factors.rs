@@ -15,7 +15,7 @@
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
 use crate::body::elasticity::Material;
-use crate::body::{Body, MOTIONS, Piece, PiecePattern, Place};
+use crate::body::{Body, MOTIONS, Piece, PiecePattern};
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::entry::{Entry, vectorized};
@@ -111,11 +111,11 @@ impl SubdomainFactors {
     ) -> Result<Self, ContactError> {
         let pattern = &*piece.pattern;
         let stiffness = piece.assemble(&body.solid, positions, |material| *material);
-        piece.check_kernel(&body.solid, &body.name, positions, &stiffness)?;
+        piece.check_kernel(&body.name, positions, &stiffness)?;
         let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
         let is_near = body.solid.materials().iter().any(|material| material.compressible_neighbour().is_some());
         let compressible = is_near.then(|| piece.assemble(&body.solid, positions, near));
-        let coordinates: Vec<Place> = piece.places(&body.solid, positions).collect();
+        let coordinates: Vec<[f64; 3]> = piece.positions(positions).collect();
         let modes = orthonormal_modes(&coordinates);
         let regularised = regularise(pattern, &stiffness, &modes);
         let inverse = symbolic.factorize(&regularised)?;

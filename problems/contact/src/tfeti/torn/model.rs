@@ -178,7 +178,8 @@ impl TornModel {
 
     /// B and B_D of a shape.
     pub(super) fn rows_of(&self, rows: &ContactRows) -> Arc<TornRows> {
-        let build = || Arc::new(self.constraints.rows_of(rows, &self.interface, &self.distribution));
+        let build =
+            || Arc::new(self.constraints.rows_of((&self.problem.bodies, rows), &self.interface, &self.distribution));
         if self.problem.geometry.is_fixed() { Arc::clone(self.fixed_rows.get_or_init(build)) } else { build() }
     }
 
@@ -191,6 +192,31 @@ impl TornModel {
     pub fn rows_times<V: Entry>(&self, rows: &Csr, torn: &mut [V]) -> RowVector<V> {
         self.interface.complete(&self.distribution, torn);
         self.constraints.multiply(rows, torn, &self.distribution)
+    }
+
+    /// Displacements at the sides of the rows, weighted as the rows see them, from those of the nodes.
+    pub(crate) fn weighted(&self, rows: &ContactRows, nodal: &NodeValues) -> NodeValues {
+        let mut values = nodal.clone();
+        for (number, (body, weights)) in self.problem.bodies.iter().zip(&rows.traces).enumerate() {
+            for corner in body.trace.corners().filter(|corner| nodal.0[number].contains_key(corner)) {
+                let own = body.trace.value(weights, corner, &|node| nodal.of(number, node));
+                values.0[number].insert(corner, own);
+            }
+        }
+        values
+    }
+
+    /// Forces on the nodes from those on the sides of the rows: the transpose of [`weighted`](Self::weighted).
+    pub(crate) fn nodal_forces(&self, rows: &ContactRows, sides: &NodeValues) -> NodeValues {
+        let mut values = NodeValues::zeros(self.problem.bodies.len());
+        for (number, (body, weights)) in self.problem.bodies.iter().zip(&rows.traces).enumerate() {
+            let mut own: Vec<(u32, [f64; 3])> = sides.0[number].iter().map(|(node, force)| (*node, *force)).collect();
+            own.sort_unstable_by_key(|(node, _)| *node);
+            for (node, force) in own {
+                body.trace.spread(weights, node, force, &mut |node, share| values.add_to(number, node, share));
+            }
+        }
+        values
     }
 
     /// The mean over the copies of torn displacements at every node in contact rows, along the axes; known to all
@@ -249,10 +275,9 @@ impl TornModel {
             for (index, (subdomain, part)) in self.subdomains.iter().zip(&system.parts).enumerate() {
                 let body = subdomain.body;
                 let coefficients = &motion[MOTIONS * body..MOTIONS * (body + 1)];
-                let (own, piece) = self.piece(index);
-                let places = piece.places(&own.solid, &positions[body]);
+                let points = self.piece(index).1.positions(&positions[body]);
                 let displacement: Vec<f64> =
-                    places.flat_map(|place| rigid.displacement(body, coefficients, place)).collect();
+                    points.flat_map(|point| rigid.displacement(body, coefficients, point)).collect();
                 amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
             }
             let mut amplitudes = self.clusters.gather(&system.cluster_resultants(amplitudes), MOTIONS);
@@ -384,7 +409,7 @@ fn check_motions(
     }
     let nodes = |number: usize| {
         let (body, piece) = numbering.place(number);
-        bodies[body].pieces[piece].places(&bodies[body].solid, bodies[body].mesh.nodes()).collect::<Vec<_>>()
+        bodies[body].pieces[piece].positions(bodies[body].mesh.nodes()).collect::<Vec<_>>()
     };
     let own = distribution.owned();
     let first = if own.is_empty() { 0 } else { numbering.cluster_of(own.start) };

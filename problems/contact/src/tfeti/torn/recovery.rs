@@ -15,19 +15,14 @@ pub fn whole_bodies(model: &TornModel, positions: &Positions, torn: &TornVector)
 }
 
 /// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each
-/// of the c copies of a node carries 1/c of its entries; the ends of a tied node carry half of its entries besides.
+/// of the c copies of a node carries 1/c of its entries.
 pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
     let mut torn = model.zeros();
     let mut first = 0;
     for (number, body) in model.problem.bodies.iter().enumerate() {
         let count = body.mesh.node_count();
-        let mut own: Vec<[f64; 3]> = loads[first..first + 3 * count].as_chunks::<3>().0.to_vec();
+        let own = loads[first..first + 3 * count].as_chunks::<3>().0;
         first += 3 * count;
-        for node in 0..count as u32 {
-            let Some(ends) = body.solid.ends_of(node) else { continue };
-            let tied = own[node as usize];
-            ends.iter().for_each(|&end| (0..3).for_each(|axis| own[end as usize][axis] += 0.5 * tied[axis]));
-        }
         let mut copies = vec![0.0; count];
         let nodes = body.pieces.iter().flat_map(|piece| &piece.nodes);
         nodes.for_each(|&node| copies[node as usize] += 1.0);
@@ -60,17 +55,11 @@ fn whole_body(model: &TornModel, number: usize, positions: &Positions, torn: &[f
             *sum += value;
         }
     }
-    let mut displacement: Vec<[f64; 3]> =
+    let displacement: Vec<[f64; 3]> =
         sums.chunks_exact(4).map(|sum| std::array::from_fn(|component| sum[component] / sum[3].max(1.0))).collect();
     let mut spread = vec![0.0; count];
     for (node, copy) in copies() {
         spread[node] += copy.iter().zip(displacement[node]).map(|(copy, mean)| (copy - mean).powi(2)).sum::<f64>();
-    }
-    for node in 0..count as u32 {
-        if let Some([a, b]) = body.solid.ends_of(node).map(|ends| ends.map(|end| displacement[end as usize])) {
-            let own = &mut displacement[node as usize];
-            (0..3).for_each(|axis| own[axis] += 0.5 * (a[axis] + b[axis]));
-        }
     }
     let before: usize = model.problem.bodies[..number].iter().map(|body| body.pieces.len()).sum();
     let mut subdomains = vec![0; body.mesh.cell_count()];

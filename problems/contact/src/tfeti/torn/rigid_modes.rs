@@ -1,12 +1,11 @@
 //! The six rigid body modes of a floating subdomain, known analytically and orthonormalised.
 
-use crate::body::{MOTIONS, Place};
+use crate::body::{MOTIONS, rigid_motions};
 use crate::linear::sums::Whole;
 use crate::linear::vector::norm;
 
 /// Orthonormal basis of the rigid motions of a set of nodes, six columns of three dofs per node.
-pub fn orthonormal_modes(nodes: &[Place]) -> Vec<Vec<f64>> {
-    let points: Vec<[f64; 3]> = nodes.iter().filter_map(|place| place.point()).collect();
+pub fn orthonormal_modes(points: &[[f64; 3]]) -> Vec<Vec<f64>> {
     let count = points.len() as f64;
     let centre: [f64; 3] = std::array::from_fn(|axis| points.iter().map(|node| node[axis]).sum::<f64>() / count);
     let length = points
@@ -15,8 +14,8 @@ pub fn orthonormal_modes(nodes: &[Place]) -> Vec<Vec<f64>> {
         .fold(0.0, f64::max)
         .sqrt();
     let mut modes = vec![Vec::new(); MOTIONS];
-    for &node in nodes {
-        for (mode, motion) in modes.iter_mut().zip(node.motions(centre, length)) {
+    for &point in points {
+        for (mode, motion) in modes.iter_mut().zip(rigid_motions(point, centre, length)) {
             mode.extend_from_slice(&motion);
         }
     }

@@ -1,7 +1,7 @@
 //! The rows of B, one after the other: what glues, what supports, and what meets the counter surface.
 
-use crate::body::Body;
-use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, NodeRows, Side};
+use crate::body::{Body, TraceWeights};
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, NodeRows};
 use crate::tfeti::torn::copies::Copies;
 use crate::tfeti::torn::joints::Joints;
 use crate::tfeti::torn::numbering::Numbering;
@@ -155,67 +155,102 @@ fn weighted(rows: &[Vec<f64>], stiffness: &[f64]) -> Vec<Vec<f64>> {
 pub struct ContactNode {
     /// ν at the start: all rows of the node are divided by it.
     pub normalisation: f64,
+    /// Body and node of every side.
+    sides: Vec<(usize, u32)>,
     parts: Vec<ContactPart>,
+    /// The parts by body and node.
+    places: HashMap<(usize, u32), usize>,
 }
 
 #[derive(Debug)]
 struct ContactPart {
-    /// The place of the node among the sides.
-    side: usize,
     copies: Vec<usize>,
     compliance: f64,
     free: Vec<[f64; 3]>,
 }
 
 impl ContactNode {
-    /// `weights`: of the sides at the start.
+    /// A contact node with its rows at the start.
     pub fn new(
-        (point, weights): (&ContactPoint, &[f64]),
-        bodies: &[Body],
+        (point, rows): (&ContactPoint, &NodeRows),
+        (bodies, traces): (&[Body], &[TraceWeights]),
         copies: &[Copies],
         cell_of: &[HashMap<u32, u32>],
     ) -> Self {
-        let part = |(number, side): (usize, &Side)| {
-            let (body, cell) = (&bodies[side.body], cell_of[side.body].get(&side.node).copied().unwrap_or(0));
-            let compliance = 1.0 / body.solid.material(cell as usize).young_modulus();
-            let copies = copies[side.body].of(side.node).to_vec();
-            ContactPart { side: number, copies, compliance, free: body.free(side.node) }
-        };
-        let parts = point.sides.iter().enumerate().map(part).filter(|part| !part.free.is_empty());
-        let parts: Vec<ContactPart> = parts.collect();
-        let squared: f64 = parts.iter().map(|part| weights[part.side].powi(2) / part.copies.len() as f64).sum();
-        Self { normalisation: squared.sqrt(), parts }
+        let (mut parts, mut places) = (Vec::new(), HashMap::new());
+        for side in &point.sides {
+            let body = &bodies[side.body];
+            let nodes = std::iter::once(side.node).chain(body.trace.support(side.node));
+            for node in nodes {
+                let free = body.free(node);
+                if free.is_empty() || places.contains_key(&(side.body, node)) {
+                    continue;
+                }
+                let cell = cell_of[side.body].get(&node).copied().unwrap_or(0);
+                let compliance = 1.0 / body.solid.material(cell as usize).young_modulus();
+                places.insert((side.body, node), parts.len());
+                parts.push(ContactPart { copies: copies[side.body].of(node).to_vec(), compliance, free });
+            }
+        }
+        let mut sums = vec![0.0; parts.len()];
+        for (side, weight) in point.sides.iter().zip(&rows.weights) {
+            bodies[side.body].trace.spread_scalar(&traces[side.body], side.node, *weight, &mut |node, share| {
+                places.get(&(side.body, node)).into_iter().for_each(|&part: &usize| sums[part] += share);
+            });
+        }
+        let squared: f64 = sums.iter().zip(&parts).map(|(sum, part)| sum.powi(2) / part.copies.len() as f64).sum();
+        let sides = point.sides.iter().map(|side| (side.body, side.node)).collect();
+        Self { normalisation: squared.sqrt(), sides, parts, places }
     }
 
     /// A row of B and of B_D for a direction and the weights of the sides.
-    pub fn row(&self, direction: &[f64; 3], weights: &[f64]) -> [SparseRow; 2] {
+    fn row(&self, direction: [f64; 3], weights: &[f64], (bodies, rows): (&[Body], &ContactRows)) -> [SparseRow; 2] {
         let nu = self.normalisation;
-        // Entries w d/(mν); weights ω w d/(mν) with Σ ω w²|d|²/(mν²) = 1 and ω proportional to the body's compliance.
-        let own = |part: &ContactPart| projected(&part.free, direction);
-        let parts = || self.parts.iter().filter(|part| weights[part.side] != 0.0);
-        let share = |part: &ContactPart| {
-            part.compliance * weights[part.side].powi(2) * square(own(part)) / (part.copies.len() as f64 * nu * nu)
+        let mut vectors = vec![[0.0; 3]; self.parts.len()];
+        for (&(body, node), weight) in self.sides.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let force = direction.map(|d| weight * d);
+            bodies[body].trace.spread(&rows.traces[body], node, force, &mut |node, share| {
+                let Some(&part) = self.places.get(&(body, node)) else { return };
+                (0..3).for_each(|axis| vectors[part][axis] += share[axis]);
+            });
+        }
+        // Entries v/(mν); weights ω v/(mν) with Σ ω |v|²/(mν²) = 1 and ω proportional to the body's compliance.
+        let parts = self.parts.iter().zip(&vectors).map(|(part, vector)| (part, projected(&part.free, vector)));
+        let parts: Vec<(&ContactPart, [f64; 3])> = parts.filter(|(_, vector)| *vector != [0.0; 3]).collect();
+        let share = |(part, vector): &(&ContactPart, [f64; 3])| {
+            part.compliance * square(*vector) / (part.copies.len() as f64 * nu * nu)
         };
-        let total: f64 = parts().map(share).sum();
+        let total: f64 = parts.iter().map(share).sum();
         let (mut row, mut weighted) = (Vec::new(), Vec::new());
-        for part in parts() {
-            let factor = weights[part.side] / (part.copies.len() as f64 * nu);
+        for (part, vector) in &parts {
+            let factor = 1.0 / (part.copies.len() as f64 * nu);
             for &first in &part.copies {
-                row.extend(along(first, &own(part), factor));
-                weighted.extend(along(first, &own(part), factor * part.compliance / total));
+                row.extend(along(first, vector, factor));
+                weighted.extend(along(first, vector, factor * part.compliance / total));
             }
         }
         [row, weighted]
     }
 
     /// All torn dofs that rows along some directions may have entries at: of a row along an axis, that axis alone.
-    pub fn dofs(&self, directions: &[[f64; 3]]) -> Vec<usize> {
-        let of_part = |part: &ContactPart| {
-            let axes = (0..3).filter(|&axis| directions.iter().any(|d| projected(&part.free, d)[axis] != 0.0));
-            let axes: Vec<usize> = axes.collect();
+    pub fn dofs(&self, bodies: &[Body], directions: &[[f64; 3]]) -> Vec<usize> {
+        let mut axes = vec![[false; 3]; self.parts.len()];
+        for &(body, side) in &self.sides {
+            let trace = &bodies[body].trace;
+            for node in trace.support(side) {
+                let Some(&part) = self.places.get(&(body, node)) else { continue };
+                for direction in directions {
+                    let own = if node == side { *direction } else { trace.projected(side, *direction) };
+                    let found = projected(&self.parts[part].free, &own);
+                    (0..3).for_each(|axis| axes[part][axis] |= found[axis] != 0.0);
+                }
+            }
+        }
+        let of_part = |(part, axes): (&ContactPart, &[bool; 3])| {
+            let axes: Vec<usize> = (0..3).filter(|&axis| axes[axis]).collect();
             part.copies.iter().flat_map(|&first| axes.iter().map(move |axis| first + axis)).collect::<Vec<_>>()
         };
-        self.parts.iter().flat_map(of_part).collect()
+        self.parts.iter().zip(&axes).flat_map(of_part).collect()
     }
 }
 
@@ -241,11 +276,11 @@ fn square(a: [f64; 3]) -> f64 {
     a.iter().map(|x| x * x).sum()
 }
 
-/// A cell of every contact node of every body: its material weighs the rows of the node.
+/// A cell of every node in contact rows of every body: its material weighs the rows of the node.
 pub fn contact_cells(boundary: &ContactBoundary, bodies: &[Body]) -> Vec<HashMap<u32, u32>> {
     let mut cells = vec![HashMap::new(); bodies.len()];
     for side in boundary.points.iter().flat_map(|point| &point.sides) {
-        cells[side.body].insert(side.node, u32::MAX);
+        cells[side.body].extend(bodies[side.body].trace.support(side.node).into_iter().map(|node| (node, u32::MAX)));
     }
     for (body, cells) in bodies.iter().zip(&mut cells) {
         for (number, cell) in body.mesh.cells().enumerate() {
@@ -260,9 +295,10 @@ pub fn contact_cells(boundary: &ContactBoundary, bodies: &[Body]) -> Vec<HashMap
 }
 
 /// The contact rows of B and B_D of a shape.
-pub fn contact_rows(nodes: &[ContactNode], rows: &ContactRows) -> Vec<[SparseRow; 2]> {
-    let of_node = |(node, rows): (&ContactNode, &NodeRows)| {
-        rows.directions.iter().map(|direction| node.row(direction, &rows.weights)).collect::<Vec<_>>()
+pub fn contact_rows(nodes: &[ContactNode], bodies: &[Body], rows: &ContactRows) -> Vec<[SparseRow; 2]> {
+    let of_node = |(node, own): (&ContactNode, &NodeRows)| {
+        let directions = own.directions.iter();
+        directions.map(|direction| node.row(*direction, &own.weights, (bodies, rows))).collect::<Vec<_>>()
     };
     nodes.iter().zip(&rows.nodes).flat_map(of_node).collect()
 }
