@@ -29,5 +29,5 @@ pub use piece::{Patterns, Piece, PiecePattern};
 pub use rigid_motions::{MOTIONS, rigid_motions};
 pub use solid::Solid;
 pub(crate) use support::{beyond, nodal_normals};
-pub use trace::TraceWeights;
 pub(crate) use trace::Trace;
+pub use trace::TraceWeights;

@@ -265,6 +265,14 @@ impl Trace {
         self.terms(weights, node).for_each(|(middle, weight)| middle.spread(part.map(|f| weight * f), add));
     }
 
+    /// The displacements along one direction whose w is 1 at a node and 0 at all other corners: `add(node, value)`.
+    pub(crate) fn hat(&self, node: u32, mut add: impl FnMut(u32, f64)) {
+        add(node, 1.0);
+        let middles = self.corner(node).into_iter().flat_map(|place| &self.corners[place].middles);
+        let middles = middles.map(|&middle| self.middles[middle as usize]);
+        middles.filter(|middle| middle.ends.contains(&node)).for_each(|middle| add(middle.node, 0.5));
+    }
+
     /// As [`spread`](Self::spread) for numbers in place of forces, without regard to supports.
     pub(crate) fn spread_scalar(&self, weights: &TraceWeights, node: u32, number: f64, add: &mut impl FnMut(u32, f64)) {
         add(node, number);

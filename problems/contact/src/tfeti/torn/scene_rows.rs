@@ -206,27 +206,36 @@ impl ContactNode {
     /// A row of B and of B_D for a direction and the weights of the sides.
     fn row(&self, direction: [f64; 3], weights: &[f64], (bodies, rows): (&[Body], &ContactRows)) -> [SparseRow; 2] {
         let nu = self.normalisation;
-        let mut vectors = vec![[0.0; 3]; self.parts.len()];
-        for (&(body, node), weight) in self.sides.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-            let force = direction.map(|d| weight * d);
-            bodies[body].trace.spread(&rows.traces[body], node, force, &mut |node, share| {
-                let Some(&part) = self.places.get(&(body, node)) else { return };
-                (0..3).for_each(|axis| vectors[part][axis] += share[axis]);
+        // Sums over the sides: of the row, and of displacements of the nodes of a side that no row of other nodes sees.
+        let (mut vectors, mut hats) = (vec![[0.0; 3]; self.parts.len()], vec![[0.0; 3]; self.parts.len()]);
+        let add = |sum: &mut [f64; 3], factor: f64, vector: [f64; 3]| {
+            (0..3).for_each(|axis| sum[axis] += factor * vector[axis]);
+        };
+        for (&(body, side), weight) in self.sides.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let (trace, force) = (&bodies[body].trace, direction.map(|d| weight * d));
+            trace.spread(&rows.traces[body], side, force, &mut |node, share| {
+                let place = self.places.get(&(body, node));
+                place.into_iter().for_each(|&part| add(&mut vectors[part], 1.0, share));
+            });
+            let Some(own) = self.places.get(&(body, side)).map(|&part| &self.parts[part]) else { continue };
+            let (scale, inside) = (own.compliance / own.copies.len() as f64, trace.projected(side, force));
+            trace.hat(side, |node, share| {
+                let vector = if node == side { force } else { inside };
+                let place = self.places.get(&(body, node));
+                place.into_iter().for_each(|&part| add(&mut hats[part], scale * share, vector));
             });
         }
-        // Entries v/(mν); weights ω v/(mν) with Σ ω |v|²/(mν²) = 1 and ω proportional to the body's compliance.
-        let parts = self.parts.iter().zip(&vectors).map(|(part, vector)| (part, projected(&part.free, vector)));
-        let parts: Vec<(&ContactPart, [f64; 3])> = parts.filter(|(_, vector)| *vector != [0.0; 3]).collect();
-        let share = |(part, vector): &(&ContactPart, [f64; 3])| {
-            part.compliance * square(*vector) / (part.copies.len() as f64 * nu * nu)
-        };
-        let total: f64 = parts.iter().map(share).sum();
+        // Entries v/(mν) of B; of B_D those of the hats h/ν, over Σ v·h/ν².
+        for (part, (vector, hat)) in self.parts.iter().zip(vectors.iter_mut().zip(&mut hats)) {
+            (*vector, *hat) = (projected(&part.free, vector), projected(&part.free, hat));
+        }
+        let products = vectors.iter().zip(&hats).map(|(a, b)| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>());
+        let total: f64 = products.sum::<f64>() / (nu * nu);
         let (mut row, mut weighted) = (Vec::new(), Vec::new());
-        for (part, vector) in &parts {
-            let factor = 1.0 / (part.copies.len() as f64 * nu);
+        for (part, (vector, hat)) in self.parts.iter().zip(vectors.iter().zip(&hats)) {
             for &first in &part.copies {
-                row.extend(along(first, vector, factor));
-                weighted.extend(along(first, vector, factor * part.compliance / total));
+                row.extend(along(first, vector, 1.0 / (part.copies.len() as f64 * nu)));
+                weighted.extend(along(first, hat, 1.0 / (nu * total)));
             }
         }
         [row, weighted]
@@ -270,10 +279,6 @@ fn projected(free: &[[f64; 3]], direction: &[f64; 3]) -> [f64; 3] {
         (0..3).for_each(|axis| sum[axis] += share * own[axis]);
     }
     sum
-}
-
-fn square(a: [f64; 3]) -> f64 {
-    a.iter().map(|x| x * x).sum()
 }
 
 /// A cell of every node in contact rows of every body: its material weighs the rows of the node.
