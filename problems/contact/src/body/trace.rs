@@ -354,14 +354,14 @@ mod tests {
 
     const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-    /// Three facets about node 0, the edge from 0 to 3 in two of them; a support holds nodes 3, 9 and 2 along x₁, and
-    /// node 8, the middle of 2 and 3, along x₂ as well.
+    /// Three facets about node 0; supports hold nodes 2 and 3 and the middle node 8 between them along x₁, and the middle
+    /// node 9 between 0 and 3 along x₂.
     fn trace() -> Trace {
         let facets = [[0, 1, 2, 5, 6, 7], [0, 2, 3, 7, 8, 9], [0, 3, 4, 9, 10, 11]];
         let held = |node: u32| -> &'static [[f64; 3]] {
             match node {
-                2 | 3 | 9 => &AXES[..1],
-                8 => &AXES[..2],
+                2 | 3 | 8 => &AXES[..1],
+                9 => &AXES[1..2],
                 _ => &[],
             }
         };
@@ -387,11 +387,11 @@ mod tests {
             let own = trace.value(&weights, corner, &|node| u[node as usize]);
             assert!((0..3).all(|axis| (own[axis] - corners[corner as usize][axis]).abs() < 1e-15));
         }
-        // A support holds the middle node 8, but not both ends of its edge.
-        assert!(trace.middle(8).is_none() && trace.middle(9).is_some());
+        // A support holds the middle node 9, but not the ends of its edge.
+        assert!(trace.middle(9).is_none() && trace.middle(8).is_some());
     }
 
-    /// A constant pressure puts A/3 of every facet on the middle nodes, and A/3 less their halves on the corners.
+    /// Forces on corners that a constant pressure puts there leave nothing at corners: A/3 of every facet is on its middle nodes.
     #[test]
     fn forces_do_the_work_of_displacements() {
         let (trace, mut random) = (trace(), Random(5));
