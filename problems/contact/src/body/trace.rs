@@ -2,19 +2,21 @@
 //!
 //! ```text
 //! w_j = u_j + P_j Σ_m d_jm û_m,   û_m = u_m − ½(u_a + u_b)             a, b: the ends of the edge of middle node m
-//! d_jm = ½ Σ_g A_g / Σ_f A_f for edges of j: facets f about corner j, facets g about edge m,       A: of the corners
+//! d_jm = Σ_f c_f A_f / Σ_f A_f over the facets f about corner j,       c_f = 3/5 on an edge of j, −1/5 opposite to j
 //! ```
-//! On plane facets that is ∫ψ_j u / ∫ψ_j with a dual basis ψ_j of the linear functions, ∫ψ_j 4λ_aλ_b = A/6 at both ends of
-//! an edge and 0 at the opposite corner: a constant pressure is the load that belongs to it, and middle nodes are free.
-//! The dual basis of linear functions, 4λ − 1, has A/5 and −A/15; it couples more nodes and is no more accurate. P_j: onto the directions in which supports leave corner j free; along the others w_j is what supports
+//! On plane facets that is ∫ψ_j u / ∫ψ_j with the dual basis ψ_j of the linear functions and displacements u of second
+//! degree: a constant pressure is the load that belongs to it, and middle nodes are free. A_f: area of the triangle of
+//! the corners. P_j: onto the directions in which supports leave corner j free; along the others w_j is what supports
 //! prescribe to the corner. A middle node that supports hold along a direction in which they do not hold both ends, as
 //! on the edge of a curved support, has no part in w. Faces of cells of first order have no middle nodes: w_j = u_j.
 
 use crate::body::mesh::{CellFace, Mesh, narrow};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Share of the area of a facet with which the middle node of an edge counts at both ends.
-const SHARE: f64 = 0.5;
+/// Weight of a middle node in the corners of its edge, on one facet.
+const ON_EDGE: f64 = 0.6;
+/// Weight of a middle node in the corner opposite to its edge, on one facet.
+const OPPOSITE: f64 = -0.2;
 /// Part of a held direction across others that counts as none.
 const DEPENDENT: f64 = 1e-8;
 
@@ -89,10 +91,8 @@ impl Trace {
         let middle = |node: u32| middles.binary_search_by_key(&node, |middle| middle.node).ok().map(narrow);
         let mut about: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
         for nodes in &facets {
-            for corner in 0..3 {
-                let edges = [corner, (corner + 2) % 3].map(|edge| middle(nodes[3 + edge]));
-                about.entry(nodes[corner]).or_default().extend(edges.into_iter().flatten());
-            }
+            let own: Vec<u32> = nodes[3..].iter().filter_map(|&node| middle(node)).collect();
+            nodes[..3].iter().for_each(|&corner| about.entry(corner).or_default().extend(&own));
         }
         let corner = |(node, middles): (u32, BTreeSet<u32>)| Corner {
             node,
@@ -193,8 +193,11 @@ impl Trace {
     /// The terms of a corner of a facet that its middles are, with c.
     fn terms_of(&self, facet: &TraceFacet, corner: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let own = &self.corners[facet.corners[corner] as usize].middles;
-        let edges = [corner, (corner + 2) % 3].map(|edge| facet.middles[edge]);
-        edges.into_iter().flatten().filter_map(|middle| Some((own.binary_search(&middle).ok()?, SHARE)))
+        let term = move |(edge, middle): (usize, Option<u32>)| {
+            let factor = if edge == (corner + 1) % 3 { OPPOSITE } else { ON_EDGE };
+            Some((own.binary_search(&middle?).ok()?, factor))
+        };
+        facet.middles.into_iter().enumerate().filter_map(term)
     }
 
     /// The changes of the numbers along velocities of the nodes.
@@ -267,7 +270,7 @@ impl Trace {
         add(node, 1.0);
         let middles = self.corner(node).into_iter().flat_map(|place| &self.corners[place].middles);
         let middles = middles.map(|&middle| self.middles[middle as usize]);
-        middles.for_each(|middle| add(middle.node, 0.5));
+        middles.filter(|middle| middle.ends.contains(&node)).for_each(|middle| add(middle.node, 0.5));
     }
 
     /// As [`spread`](Self::spread) for numbers in place of forces, without regard to supports.
@@ -391,13 +394,13 @@ mod tests {
         assert!(trace.middle(9).is_none() && trace.middle(8).is_some());
     }
 
-    /// Forces on corners that a constant pressure puts there leave nothing at corners: A/3 of every facet is on its middle nodes.
+    /// On one facet: ∫ψ N/∫ψ = 3/5, 3/5, −1/5 for ψ = 4λ − 1 and N = 4λ_a λ_b.
     #[test]
     fn forces_do_the_work_of_displacements() {
         let (trace, mut random) = (trace(), Random(5));
         let positions = places(&mut random);
         let weights = trace.weights(&positions);
-        assert!(trace.terms(&weights, 1).map(|(_, d)| d).eq([0.5, 0.5]));
+        assert!(trace.terms(&weights, 1).map(|(_, d)| d).eq([0.6, 0.6, -0.2]));
         let (u, force) = (places(&mut random), places(&mut random)[0]);
         for corner in trace.corners() {
             let own = trace.value(&weights, corner, &|node| u[node as usize]);

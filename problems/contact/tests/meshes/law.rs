@@ -106,17 +106,24 @@ fn middles(scene: &Scene) -> BTreeMap<u32, [u32; 2]> {
     facets(scene).into_iter().flat_map(edges).collect()
 }
 
-/// By corner and middle node of an edge there: half of the areas about the edge over the areas about the corner.
+/// ∫ψ_j 4λ_a λ_b / ∫ψ_j by quadrature over the plane facets of the corners, by corner and middle node; ψ = 4λ − 1.
 fn weights(scene: &Scene, positions: &[Point]) -> BTreeMap<(u32, u32), f64> {
+    // The square, whose side x = 1 becomes a point, with Gauss points in each direction.
+    let gauss = [(0.5 - 0.15_f64.sqrt(), 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + 0.15_f64.sqrt(), 5.0 / 18.0)];
     let mut sums: BTreeMap<(u32, u32), f64> = BTreeMap::new();
     let mut whole: BTreeMap<u32, f64> = BTreeMap::new();
     for nodes in facets(scene) {
         let [x, y, z] = [0, 1, 2].map(|corner| positions[nodes[corner] as usize]);
         let area = norm(cross(plus(y, -1.0, x), plus(z, -1.0, x)));
-        for edge in 0..3 {
-            *whole.entry(nodes[edge]).or_insert(0.0) += area;
-            for end in [nodes[edge], nodes[(edge + 1) % 3]] {
-                *sums.entry((end, nodes[3 + edge])).or_insert(0.0) += 0.5 * area;
+        for ((s, first), (t, second)) in gauss.iter().flat_map(|a| gauss.iter().map(move |b| (*a, *b))) {
+            let (lambda, weight) = ([s, t * (1.0 - s), (1.0 - t) * (1.0 - s)], first * second * (1.0 - s) * area);
+            for corner in 0..3 {
+                let psi = 4.0 * lambda[corner] - 1.0;
+                *whole.entry(nodes[corner]).or_insert(0.0) += weight * psi;
+                for edge in 0..3 {
+                    let value = 4.0 * lambda[edge] * lambda[(edge + 1) % 3];
+                    *sums.entry((nodes[corner], nodes[3 + edge])).or_insert(0.0) += weight * psi * value;
+                }
             }
         }
     }

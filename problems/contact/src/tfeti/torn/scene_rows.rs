@@ -206,36 +206,34 @@ impl ContactNode {
     /// A row of B and of B_D for a direction and the weights of the sides.
     fn row(&self, direction: [f64; 3], weights: &[f64], (bodies, rows): (&[Body], &ContactRows)) -> [SparseRow; 2] {
         let nu = self.normalisation;
-        // Sums over the sides: of the row, and of displacements of the nodes of a side that no row of other nodes sees.
-        let (mut vectors, mut hats) = (vec![[0.0; 3]; self.parts.len()], vec![[0.0; 3]; self.parts.len()]);
-        let add = |sum: &mut [f64; 3], factor: f64, vector: [f64; 3]| {
-            (0..3).for_each(|axis| sum[axis] += factor * vector[axis]);
-        };
+        // Sums over the sides: of the row, a vector with its factor, and of displacements that no row of others sees.
+        let mut vectors = vec![([0.0; 3], 1.0); self.parts.len()];
+        let mut hats = vec![0.0; self.parts.len()];
+        let mut total = 0.0;
         for (&(body, side), weight) in self.sides.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-            let (trace, force) = (&bodies[body].trace, direction.map(|d| weight * d));
-            trace.spread(&rows.traces[body], side, force, &mut |node, share| {
-                let place = self.places.get(&(body, node));
-                place.into_iter().for_each(|&part| add(&mut vectors[part], 1.0, share));
-            });
-            let Some(own) = self.places.get(&(body, side)).map(|&part| &self.parts[part]) else { continue };
-            let (scale, inside) = (own.compliance / own.copies.len() as f64, trace.projected(side, force));
-            trace.hat(side, |node, share| {
-                let vector = if node == side { force } else { inside };
-                let place = self.places.get(&(body, node));
-                place.into_iter().for_each(|&part| add(&mut hats[part], scale * share, vector));
-            });
+            let trace = &bodies[body].trace;
+            let place = |node: u32| self.places.get(&(body, node)).copied();
+            if trace.support(side).len() == 1 {
+                place(side).into_iter().for_each(|part| vectors[part] = (direction, *weight));
+            } else {
+                trace.spread(&rows.traces[body], side, direction.map(|d| weight * d), &mut |node, share| {
+                    let Some(part) = place(node) else { return };
+                    (0..3).for_each(|axis| vectors[part].0[axis] += share[axis]);
+                });
+            }
+            let Some(own) = place(side).map(|part| &self.parts[part]) else { continue };
+            // Entries w d/(mν); weights ω w d/(mν) with Σ ω w²|d|²/(mν²) = 1 and ω proportional to the compliance.
+            let (copies, square) = (own.copies.len() as f64, square(projected(&own.free, &direction)));
+            total += own.compliance * weight.powi(2) * square / (copies * nu * nu);
+            let factor = weight / (copies * nu) * own.compliance;
+            trace.hat(side, |node, share| place(node).into_iter().for_each(|part| hats[part] += share * factor));
         }
-        // Entries v/(mν) of B; of B_D those of the hats h/ν, over Σ v·h/ν².
-        for (part, (vector, hat)) in self.parts.iter().zip(vectors.iter_mut().zip(&mut hats)) {
-            (*vector, *hat) = (projected(&part.free, vector), projected(&part.free, hat));
-        }
-        let products = vectors.iter().zip(&hats).map(|(a, b)| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>());
-        let total: f64 = products.sum::<f64>() / (nu * nu);
         let (mut row, mut weighted) = (Vec::new(), Vec::new());
-        for (part, (vector, hat)) in self.parts.iter().zip(vectors.iter().zip(&hats)) {
+        for (part, ((vector, weight), hat)) in self.parts.iter().zip(vectors.iter().zip(&hats)) {
+            let factor = weight / (part.copies.len() as f64 * nu);
             for &first in &part.copies {
-                row.extend(along(first, vector, 1.0 / (part.copies.len() as f64 * nu)));
-                weighted.extend(along(first, hat, 1.0 / (nu * total)));
+                row.extend(along(first, &projected(&part.free, vector), factor));
+                weighted.extend(along(first, &projected(&part.free, &direction), hat / total));
             }
         }
         [row, weighted]
@@ -279,6 +277,10 @@ fn projected(free: &[[f64; 3]], direction: &[f64; 3]) -> [f64; 3] {
         (0..3).for_each(|axis| sum[axis] += share * own[axis]);
     }
     sum
+}
+
+fn square(a: [f64; 3]) -> f64 {
+    a.iter().map(|x| x * x).sum()
 }
 
 /// A cell of every node in contact rows of every body: its material weighs the rows of the node.
