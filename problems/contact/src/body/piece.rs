@@ -35,7 +35,7 @@ pub struct PiecePattern {
     /// Lower triangle of the stiffness matrix.
     pub lower: Arc<LowerPattern>,
     /// The nodes of every cell in the piece.
-    cells: Vec<Vec<u32>>,
+    cells: LocalCells,
     /// Position of the lower entries of every cell in the value array, cell by cell.
     scatter: Vec<u32>,
     /// Three nodes that span a large triangle: enough to hold all rigid motions.
@@ -47,7 +47,10 @@ pub struct PiecePattern {
 
 /// Patterns by the numbering of their cells.
 #[derive(Debug, Default)]
-pub struct Patterns(HashMap<(Vec<Vec<u32>>, [usize; 3]), Arc<PiecePattern>>);
+pub struct Patterns(HashMap<(LocalCells, [usize; 3]), Arc<PiecePattern>>);
+
+/// The nodes of cells in a piece.
+type LocalCells = Vec<Vec<u32>>;
 
 impl Piece {
     /// The piece of some cells of a body, ascending; patterns are shared by way of `known`.
@@ -56,7 +59,7 @@ impl Piece {
         nodes.sort_unstable();
         nodes.dedup();
         let place = |node: &u32| narrow(nodes.binary_search(node).expect("invariant: taken from these cells"));
-        let local: Vec<Vec<u32>> =
+        let local: LocalCells =
             cells.iter().map(|&cell| mesh.cell(cell as usize).nodes.iter().map(place).collect()).collect();
         let points: Vec<[f64; 3]> = nodes.iter().map(|&node| mesh.nodes()[node as usize]).collect();
         let fixing = fixing_nodes(&points);
@@ -164,7 +167,7 @@ impl Piece {
 }
 
 impl PiecePattern {
-    fn new(cells: Vec<Vec<u32>>, points: Vec<[f64; 3]>, fixing: [usize; 3]) -> Self {
+    fn new(cells: LocalCells, points: Vec<[f64; 3]>, fixing: [usize; 3]) -> Self {
         let mut graph = vec![Vec::new(); points.len()];
         for nodes in &cells {
             nodes.iter().for_each(|&node| graph[node as usize].extend_from_slice(nodes));
