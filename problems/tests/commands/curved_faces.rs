@@ -48,7 +48,8 @@ fn is_near(found: [f64; 2], expected: &Value, tolerance: f64) -> bool {
 }
 
 /// The sums of tetrahedra are this program's own, by both solvers: the independent one ties middle nodes, which gives
-/// 289.634 N in place of 289.583 N and a peak of 6.905 MPa in place of 6.673 MPa; the closed form has 289.922 N, 6.152 MPa.
+/// 289.634 N in place of 289.583 N and a peak of 6.905 MPa in place of 6.673 MPa; the closed form has 289.922 N and
+/// 6.152 MPa.
 #[test]
 fn gaps_of_surfaces_are_those_of_an_independent_program() {
     for case in reference() {

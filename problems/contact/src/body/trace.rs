@@ -357,8 +357,8 @@ mod tests {
 
     const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-    /// Three facets about node 0; supports hold nodes 2 and 3 and the middle node 8 between them along x₁, and the middle
-    /// node 9 between 0 and 3 along x₂.
+    /// Three facets about node 0; supports hold nodes 2 and 3 and the middle node 8 between them along x₁, and the
+    /// middle node 9 between 0 and 3 along x₂.
     fn trace() -> Trace {
         let facets = [[0, 1, 2, 5, 6, 7], [0, 2, 3, 7, 8, 9], [0, 3, 4, 9, 10, 11]];
         let held = |node: u32| -> &'static [[f64; 3]] {

@@ -69,8 +69,8 @@ fn block_at(values: &[f64], lower: &LowerPattern, row: usize, column: usize) -> 
     Some(std::array::from_fn(|i| std::array::from_fn(|j| of(i, j))))
 }
 
-/// Adds a block to that of a row and a column, and its transpose to the mirrored one, of which the lower is kept; of the
-/// diagonal block the lower part.
+/// Adds a block to that of a row and a column, and its transpose to the mirrored one, of which the lower is kept; of
+/// the diagonal block the lower part.
 fn add(values: &mut [f64], lower: &LowerPattern, row: usize, column: usize, block: &Block) {
     if row < column {
         return add(values, lower, column, row, &transposed(block));

@@ -93,20 +93,19 @@ impl Constraints {
         (start, are_fixed): (&ContactRows, bool),
     ) -> (Self, Interface) {
         let subdomains = distribution.owned();
-        let copies: Vec<Copies> =
-            bodies.iter().enumerate().map(|(number, body)| Copies::new(number, body, numbering)).collect();
+        let of_body = |(number, body)| Copies::new(number, body, numbering);
+        let copies: Vec<Copies> = bodies.iter().enumerate().map(of_body).collect();
         let joints = Joints::new(bodies, &copies, numbering);
         let cells = contact_cells(boundary, bodies);
         let nodes: Vec<HashSet<u32>> = cells.iter().map(|cells| cells.keys().copied().collect()).collect();
         let all = SceneRows::new((bodies, &nodes), &copies, numbering, &subdomains, &joints);
         let points = boundary.points.iter().zip(&start.nodes);
-        let contact: Vec<ContactNode> = points
-            .map(|(point, rows)| ContactNode::new((point, rows), (bodies, &start.traces), &copies, &cells))
-            .collect();
+        let of_node = |own| ContactNode::new(own, (bodies, &start.traces), &copies, &cells);
+        let contact: Vec<ContactNode> = points.map(of_node).collect();
         let dofs: Vec<Vec<usize>> = contact
             .iter()
             .zip(boundary.points.iter().zip(&start.nodes))
-            .map(|(node, (point, rows))| node.dofs(bodies, &possible_directions(point, &rows.directions, are_fixed)))
+            .map(|(node, (point, own))| node.dofs(bodies, &possible_directions(point, &own.directions, are_fixed)))
             .collect();
         let owner = |dofs: &Vec<usize>| dofs.iter().min().map_or(0, |dof| numbering.owner(*dof));
         let node_owners: Vec<usize> = dofs.iter().map(owner).collect();
