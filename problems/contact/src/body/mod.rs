@@ -28,6 +28,5 @@ pub(crate) use piece::lower_pattern;
 pub use piece::{Patterns, Piece, PiecePattern};
 pub use rigid_motions::{MOTIONS, rigid_motions};
 pub use solid::Solid;
-pub(crate) use support::{beyond, nodal_normals};
-pub(crate) use trace::Trace;
-pub use trace::TraceWeights;
+pub(crate) use support::{beyond, nodal_normals, onto};
+pub(crate) use trace::{Trace, TraceWeights};

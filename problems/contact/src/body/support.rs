@@ -124,6 +124,19 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
+/// The part of a vector along orthonormal directions; the vector itself if there are three.
+pub(crate) fn onto(directions: &[[f64; 3]], vector: [f64; 3]) -> [f64; 3] {
+    if directions.len() == 3 {
+        return vector;
+    }
+    let mut sum = [0.0; 3];
+    for direction in directions {
+        let share = dot(*direction, vector);
+        (0..3).for_each(|axis| sum[axis] += share * direction[axis]);
+    }
+    sum
+}
+
 /// The part of a unit vector beyond orthonormal ones, at length one; none if there is none.
 pub(crate) fn beyond(known: &[[f64; 3]], direction: [f64; 3]) -> Option<[f64; 3]> {
     rest_beyond(known, direction).map(|(rest, _)| rest)

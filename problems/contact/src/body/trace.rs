@@ -11,18 +11,18 @@
 //! on the edge of a curved support, has no part in w. Faces of cells of first order have no middle nodes: w_j = u_j.
 
 use crate::body::mesh::{CellFace, Mesh, narrow};
+use crate::body::support::{beyond, onto};
+use crate::mortar::vector::{cross, dot, length, plus};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Weight of a middle node in the corners of its edge, on one facet.
 const ON_EDGE: f64 = 0.6;
 /// Weight of a middle node in the corner opposite to its edge, on one facet.
 const OPPOSITE: f64 = -0.2;
-/// Part of a held direction across others that counts as none.
-const DEPENDENT: f64 = 1e-8;
 
 /// The contact faces of a body with middle nodes; nothing where there are none.
 #[derive(Debug, Default, PartialEq)]
-pub struct Trace {
+pub(crate) struct Trace {
     /// Corners with middle nodes about them, ascending by their nodes.
     corners: Vec<Corner>,
     /// Ascending by their nodes.
@@ -55,9 +55,10 @@ struct TraceFacet {
     middles: [Option<u32>; 3],
 }
 
-/// The numbers d of a shape, per corner and middle in its weighted displacement; also their changes and sensitivities.
+/// The weights d of a shape, per corner and middle node in its weighted displacement; also their changes and
+/// sensitivities.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct TraceWeights(Vec<Vec<f64>>);
+pub(crate) struct TraceWeights(Vec<Vec<f64>>);
 
 impl Trace {
     /// The trace of some faces of a mesh, for the directions in which supports hold a node and leave it free.
@@ -81,7 +82,8 @@ impl Trace {
         for nodes in &facets {
             for edge in 0..3 {
                 let own = [nodes[edge], nodes[(edge + 1) % 3]];
-                let is_held = |end: u32| held(nodes[3 + edge]).iter().all(|&direction| spans(held(end), direction));
+                let is_held =
+                    |end: u32| held(nodes[3 + edge]).iter().all(|&direction| beyond(held(end), direction).is_none());
                 if own.into_iter().all(is_held) {
                     ends.insert(nodes[3 + edge], own);
                 }
@@ -134,7 +136,7 @@ impl Trace {
         &self.middles
     }
 
-    /// The middle nodes in the weighted displacement of a node, with their numbers d.
+    /// The middle nodes in the weighted displacement of a node, with their weights d.
     pub(crate) fn terms<'a>(
         &'a self,
         weights: &'a TraceWeights,
@@ -159,13 +161,15 @@ impl Trace {
 
     /// P v of a node: the part of a vector along the directions in which its weighted displacement has middle nodes.
     pub(crate) fn projected(&self, node: u32, vector: [f64; 3]) -> [f64; 3] {
-        match self.corner(node).map(|place| &self.corners[place].free) {
-            Some(free) if free.len() < 3 => along(free, vector),
-            _ => vector,
-        }
+        self.corner(node).map_or(vector, |place| onto(&self.corners[place].free, vector))
     }
 
-    /// The numbers of a shape.
+    /// Whether the displacement of a node in rows is its own alone.
+    pub(crate) fn is_nodal(&self, node: u32) -> bool {
+        self.corner(node).is_none_or(|place| self.corners[place].middles.is_empty())
+    }
+
+    /// The weights of a shape.
     pub(crate) fn weights(&self, positions: &[[f64; 3]]) -> TraceWeights {
         let (mut sums, whole) = self.sums(|facet| area(facet.nodes.map(|node| positions[node as usize])).0);
         for (own, whole) in sums.0.iter_mut().zip(&whole) {
@@ -200,7 +204,7 @@ impl Trace {
         facet.middles.into_iter().enumerate().filter_map(term)
     }
 
-    /// The changes of the numbers along velocities of the nodes.
+    /// The changes of the weights along velocities of the nodes.
     pub(crate) fn changes(
         &self,
         weights: &TraceWeights,
@@ -218,7 +222,7 @@ impl Trace {
         changes
     }
 
-    /// From sensitivities of the numbers to those of the positions of nodes: `add(node, sensitivity)`.
+    /// From sensitivities of the weights to those of the positions of nodes: `add(node, sensitivity)`.
     pub(crate) fn pull_back(
         &self,
         weights: &TraceWeights,
@@ -244,12 +248,8 @@ impl Trace {
     /// w of a node.
     pub(crate) fn value(&self, weights: &TraceWeights, node: u32, u: &impl Fn(u32) -> [f64; 3]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (middle, weight) in self.terms(weights, node) {
-            let own = middle.value(u);
-            (0..3).for_each(|axis| sum[axis] += weight * own[axis]);
-        }
-        let (own, part) = (u(node), self.projected(node, sum));
-        std::array::from_fn(|axis| own[axis] + part[axis])
+        self.terms(weights, node).for_each(|(middle, weight)| sum = plus(sum, weight, middle.value(u)));
+        plus(u(node), 1.0, self.projected(node, sum))
     }
 
     /// Adds what a force on w of a node is on the nodes: `add(node, force)`.
@@ -284,12 +284,9 @@ impl Trace {
 
     /// The place that a force on w of a node acts at: Σ of the positions of its nodes, weighted as displacements.
     pub(crate) fn place(&self, weights: &TraceWeights, node: u32, positions: &[[f64; 3]]) -> [f64; 3] {
-        let mut place = positions[node as usize];
-        for (middle, weight) in self.terms(weights, node) {
-            let arm = middle.value(&|node| positions[node as usize]);
-            (0..3).for_each(|axis| place[axis] += weight * arm[axis]);
-        }
-        place
+        let position = |node: u32| positions[node as usize];
+        let terms = self.terms(weights, node);
+        terms.fold(position(node), |place, (middle, weight)| plus(place, weight, middle.value(&position)))
     }
 
     /// Numbers per corner and middle, computed from the node of the corner and the middle.
@@ -317,37 +314,13 @@ impl Middle {
 
 /// The area of a triangle, and its derivatives by the corners.
 fn area([x, y, z]: [[f64; 3]; 3]) -> (f64, [[f64; 3]; 3]) {
-    let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| a[axis] - b[axis]) };
-    let cross = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] {
-        std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
-    };
-    let (first, second) = (minus(y, x), minus(z, x));
+    let (first, second) = (plus(y, -1.0, x), plus(z, -1.0, x));
     let normal = cross(first, second);
-    let size = dot(normal, normal).sqrt();
+    let size = length(normal);
     let half = normal.map(|n| 0.5 * n / size);
     let (of_second, of_third) = (cross(second, half), cross(half, first));
     let of_first = std::array::from_fn(|axis| -of_second[axis] - of_third[axis]);
     (0.5 * size, [of_first, of_second, of_third])
-}
-
-/// Whether a direction lies in the span of orthonormal ones.
-fn spans(directions: &[[f64; 3]], direction: [f64; 3]) -> bool {
-    let inside = along(directions, direction);
-    (0..3).map(|axis| (direction[axis] - inside[axis]).powi(2)).sum::<f64>().sqrt() <= DEPENDENT
-}
-
-/// The part of a vector along orthonormal directions.
-fn along(directions: &[[f64; 3]], vector: [f64; 3]) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for direction in directions {
-        let share = dot(*direction, vector);
-        (0..3).for_each(|axis| sum[axis] += share * direction[axis]);
-    }
-    sum
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
 #[cfg(test)]

@@ -85,7 +85,7 @@ impl CompliantBody {
     pub fn loaded(&self, body: &Body, rigid: &RigidScene, number: usize, positions: &[[f64; 3]]) -> BodyLoad {
         let pattern = &self.condensed.pattern;
         let lift = pattern.lift(body);
-        let full = pattern.loads(body, positions, &lift);
+        let full = self.condensed.loads(body, positions, &lift);
         let condensed = self.condensed.condense_loads(Mat::from_fn(full.len(), 1, |dof, _| full[dof]));
         let mut contact = condensed.col_as_slice(0).to_vec();
         for (motion, coefficients) in self.motions.iter().zip(&self.coefficients) {
@@ -192,7 +192,8 @@ impl ContactBody {
         let (forces, condensed) = (self.contact_forces(multipliers), &self.stiff().condensed);
         let displacement = self.displacement(multipliers, &vec![0.0; self.stiff().motions.len()], true);
         let u = condensed.extend(&displacement, &forces, &self.load.full);
-        let rest = condensed.pattern.unbalanced(body, positions, &u, condensed.full_force(&self.load.full, &forces));
+        let rest = condensed.unbalanced(body, positions, &u, condensed.full_force(&self.load.full, &forces));
+        let rest = Mat::from_fn(rest.len(), 1, |dof, _| rest[dof]);
         multiply(&self.stiff().compliance, condensed.condense_loads(rest).col_as_slice(0))
     }
 }

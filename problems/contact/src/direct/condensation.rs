@@ -103,20 +103,6 @@ impl CondensationPattern {
         self.coordinates.lift(body, &self.piece)
     }
 
-    /// f − K u_D over the whole body, N, for its loads f and prescribed displacements u_D; 0 at held dofs.
-    pub(super) fn loads(&self, body: &Body, positions: &[[f64; 3]], lift: &[f64]) -> Vec<f64> {
-        let mut load = piece_loads(body, &self.piece, positions);
-        let weights = body.trace.weights(positions);
-        self.coordinates.forces(&body.trace, &weights, &mut load);
-        self.balance(|| self.stiffness(body, positions), lift, load)
-    }
-
-    /// K̂ in the coordinates of the body.
-    fn stiffness(&self, body: &Body, positions: &[[f64; 3]]) -> Vec<f64> {
-        let values = self.piece.assemble(&body.solid, positions, |material| *material);
-        self.coordinates.matrix((body, &self.piece), &body.trace.weights(positions), values)
-    }
-
     /// Decouples held dofs and adds the shift; returns the shift.
     fn impose(&self, values: &mut [f64]) -> f64 {
         let (lower, held) = (&self.coordinates.lower, &self.coordinates.axes.held);
@@ -136,28 +122,6 @@ impl CondensationPattern {
         shift
     }
 
-    /// f − K v, N, for displacements v and forces f in the coordinates of the body; 0 at held dofs, which supports
-    /// carry.
-    pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], v: &[f64], force: Vec<f64>) -> Mat<f64> {
-        let rest = self.balance(|| self.stiffness(body, positions), v, force);
-        Mat::from_fn(rest.len(), 1, |dof, _| rest[dof])
-    }
-
-    /// f − K v for the values of K; 0 at held dofs.
-    fn balance(&self, stiffness: impl FnOnce() -> Vec<f64>, v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
-        if v.iter().any(|entry| *entry != 0.0) {
-            let mut image = vec![0.0; v.len()];
-            self.coordinates.lower.multiply(&stiffness(), v, &mut image);
-            add_scaled(&mut force, -1.0, &image);
-        }
-        force
-            .iter_mut()
-            .zip(&self.coordinates.axes.held)
-            .filter(|(_, held)| **held)
-            .for_each(|(force, _)| *force = 0.0);
-        force
-    }
-
     /// The entries of a vector over the body that belong to the contact nodes.
     pub(super) fn contact_part(&self, values: &[f64]) -> Vec<f64> {
         self.contact.iter().flat_map(|&node| values[3 * node..3 * node + 3].iter().copied()).collect()
@@ -170,6 +134,29 @@ impl CondensationPattern {
 }
 
 impl CondensedBody {
+    /// f − K u_D over the whole body, N, for its loads f and prescribed displacements u_D; 0 at held dofs.
+    pub(super) fn loads(&self, body: &Body, positions: &[[f64; 3]], lift: &[f64]) -> Vec<f64> {
+        let mut load = piece_loads(body, &self.pattern.piece, positions);
+        self.pattern.coordinates.forces(&body.trace, &self.weights, &mut load);
+        self.unbalanced(body, positions, lift, load)
+    }
+
+    /// f − K v, N, for displacements v and forces f in the coordinates of the body; 0 at held dofs, which supports
+    /// carry.
+    pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
+        let CondensationPattern { piece, coordinates, .. } = &*self.pattern;
+        if v.iter().any(|entry| *entry != 0.0) {
+            let (mut u, mut image) = (v.to_vec(), vec![0.0; v.len()]);
+            coordinates.displacements(&body.trace, &self.weights, &mut u);
+            let stiffness = piece.assemble(&body.solid, positions, |material| *material);
+            piece.pattern.lower.multiply(&stiffness, &u, &mut image);
+            coordinates.forces(&body.trace, &self.weights, &mut image);
+            add_scaled(&mut force, -1.0, &image);
+        }
+        coordinates.hold(&mut force);
+        force
+    }
+
     /// S⁻¹f: displacements (mm) of the contact nodes under forces f (N) on them alone, for a body that supports hold.
     pub fn deflection(&self, forces: &[f64]) -> Vec<f64> {
         let mut displacement = forces.to_vec();

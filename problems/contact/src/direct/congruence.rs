@@ -35,7 +35,7 @@ pub(super) fn transform(values: &mut [f64], lower: &LowerPattern, graph: &[Vec<u
         let mut twice: BTreeMap<usize, Block> = BTreeMap::new();
         for (&row, sum) in sums {
             if row == *column {
-                add_lower(values, lower, row, *column, sum);
+                add(values, lower, row, *column, &transposed(sum));
             }
             add(values, lower, row, *column, sum);
             for (other, block) in by_row.get(&row).into_iter().flatten().filter(|(other, _)| other >= column) {
@@ -80,11 +80,6 @@ fn add(values: &mut [f64], lower: &LowerPattern, row: usize, column: usize, bloc
         let skipped = if row == column { j } else { 0 };
         (skipped..3).for_each(|i| values[first + i - skipped] += block[i][j]);
     }
-}
-
-/// Adds the transpose of a block to the lower part of a diagonal block.
-fn add_lower(values: &mut [f64], lower: &LowerPattern, row: usize, column: usize, block: &Block) {
-    add(values, lower, row, column, &transposed(block));
 }
 
 fn transposed(block: &Block) -> Block {

@@ -14,7 +14,7 @@ use crate::direct::congruence::{Block, BlockColumn, transform};
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::symmetric::LowerPattern;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The unknowns of a body, for all its shapes.
@@ -110,6 +110,11 @@ impl Coordinates {
     /// As [`forces`](Self::forces), with 0 at held unknowns.
     pub fn free_forces(&self, trace: &Trace, weights: &TraceWeights, forces: &mut [f64]) {
         self.forces(trace, weights, forces);
+        self.hold(forces);
+    }
+
+    /// Sets forces on held unknowns, which supports carry, to 0.
+    pub fn hold(&self, forces: &mut [f64]) {
         forces.iter_mut().zip(&self.axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
     }
 
@@ -150,22 +155,22 @@ fn coupled(trace: &Trace, piece: &Piece) -> Vec<Vec<u32>> {
         let middles = trace.support(corner).into_iter().filter(|&node| trace.middle(node).is_some());
         taken[local(corner) as usize].extend(middles.map(local));
     }
-    let mut graph: Vec<BTreeSet<u32>> = base.iter().map(|neighbours| neighbours.iter().copied().collect()).collect();
+    let mut graph = base.to_vec();
     for corner in trace.corners() {
         let corner = local(corner) as usize;
         let others = base[corner].iter().copied().chain([corner as u32]);
-        let rows: BTreeSet<u32> = others.flat_map(|other| taken[other as usize].iter().copied()).collect();
+        let rows: Vec<u32> = others.flat_map(|other| taken[other as usize].iter().copied()).collect();
         for &middle in &taken[corner][1..] {
-            for &row in &rows {
-                graph[middle as usize].insert(row);
-                graph[row as usize].insert(middle);
-            }
+            graph[middle as usize].extend_from_slice(&rows);
+            rows.iter().for_each(|&row| graph[row as usize].push(middle));
         }
     }
-    let without = |(node, neighbours): (usize, BTreeSet<u32>)| {
-        neighbours.into_iter().filter(|&other| other as usize != node).collect()
-    };
-    graph.into_iter().enumerate().map(without).collect()
+    for (node, neighbours) in graph.iter_mut().enumerate() {
+        neighbours.sort_unstable();
+        neighbours.dedup();
+        neighbours.retain(|other| *other as usize != node);
+    }
+    graph
 }
 
 fn add(sum: &mut [f64; 3], factor: f64, vector: [f64; 3]) {

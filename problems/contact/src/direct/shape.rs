@@ -14,7 +14,7 @@ use crate::direct::tangents::ShapeLoads;
 use crate::equilibrium::RowChange;
 use crate::equilibrium::problem::add_at;
 use crate::equilibrium::row_work::{NodeValues, changed_forces, row_approaches, row_sensitivities, side_forces};
-use crate::equilibrium::trace_work::TraceWork;
+use crate::equilibrium::trace_work::{TraceChanges, TraceWork};
 use crate::linear::vector::add_scaled;
 use crate::shape::Velocities;
 use faer::Mat;
@@ -65,16 +65,17 @@ impl DirectSolver {
 
     /// −∂(K u − f) over the bodies that controls shape, in the coordinates of the bodies, 0 at held dofs, N, one
     /// column per field of velocities.
-    pub(super) fn shape_forces(&self, state: &DirectState, velocities: &Velocities<'_>) -> Vec<(usize, Mat<f64>)> {
-        let (rows, bodies) = (&state.contact.rows, self.problem.bodies.len());
-        let changed: Vec<NodeValues> = match TraceWork::new(&self.problem, rows, &state.positions) {
-            Some(work) => {
-                let forces = side_forces((&self.problem.boundary, rows), &state.solution.forces, bodies);
-                let columns = 0..velocities.count();
-                columns.map(|column| work.forces(&work.changes(velocities, column), &forces)).collect()
-            }
-            None => Vec::new(),
-        };
+    pub(super) fn shape_forces(
+        &self,
+        state: &DirectState,
+        velocities: &Velocities<'_>,
+        traces: Option<&TraceChanges<'_>>,
+    ) -> Vec<(usize, Mat<f64>)> {
+        let rows = (&self.problem.boundary, &*state.contact.rows);
+        let changed = traces.map_or_else(Vec::new, |traces| {
+            let sides = side_forces(rows, &state.solution.forces, self.problem.bodies.len());
+            (0..velocities.count()).map(|column| traces.forces(column, &sides)).collect::<Vec<NodeValues>>()
+        });
         let of_body = |number: usize| {
             let (body, piece) = (&self.problem.bodies[number], &self.patterns[number].piece);
             let (positions, u) = (&state.positions[number], state.displacement(number));
@@ -95,7 +96,7 @@ impl DirectSolver {
     pub(super) fn shape_loads(
         &self,
         state: &DirectState,
-        velocities: &Velocities<'_>,
+        (velocities, traces): (&Velocities<'_>, Option<&TraceChanges<'_>>),
         forces: Vec<(usize, Mat<f64>)>,
     ) -> ShapeLoads {
         let (problem, contact) = (&self.problem, &state.contact);
@@ -105,12 +106,11 @@ impl DirectSolver {
         let mut turned: Vec<Mat<f64>> = sizes.map(|size| Mat::zeros(size, velocities.count())).collect();
         let turns = !problem.geometry.is_fixed();
         let u = turns.then(|| node_values(contact, &state.contact_displacements()));
-        let work = TraceWork::new(problem, &contact.rows, &state.positions);
-        let nodal = work.map(|work| work.nodal(|body, node| entry(state.displacement(body), node)));
+        let nodal = traces.map(|traces| traces.work.nodal(|body, node| entry(state.displacement(body), node)));
         let mut approaches = Vec::with_capacity(changes.len());
         for (column, changes) in changes.iter().enumerate() {
             let nodes = problem.boundary.points.iter().zip(&contact.rows.nodes).zip(changes);
-            let moved = work.zip(nodal.as_ref()).map(|(work, u)| work.moved(&work.changes(velocities, column), u));
+            let moved = traces.zip(nodal.as_ref()).map(|(traces, u)| traces.moved(column, u));
             let values = (u.as_ref(), moved.as_ref());
             approaches.push(nodes.flat_map(|(node, change)| row_approaches(node, change, values)).collect());
             if turns {

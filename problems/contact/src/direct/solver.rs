@@ -14,6 +14,7 @@ use crate::direct::force_rounding::change_of_forces;
 use crate::direct::forces::{CondensedSolution, forces};
 use crate::direct::newton::FLOOR_REACHED;
 use crate::direct::tangents::{CondensedTangents, tangents};
+use crate::equilibrium::trace_work::TraceWork;
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, ForceUnit, Positions,
     Sensitivities, SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
@@ -319,10 +320,12 @@ impl ContactSolver for DirectSolver {
             return Ok(Tangents::at_rest(&self.problem, &state.contact.rows, &velocities, of));
         }
         Stage::Adjoint.enter()?;
-        let forces = self.shape_forces(state, &velocities);
+        let traces = TraceWork::new(&self.problem, &state.contact.rows, &state.positions);
+        let traces = traces.map(|work| work.along(&velocities));
+        let forces = self.shape_forces(state, &velocities, traces.as_ref());
         // Condensing them takes their place, so that what needs them again has a copy.
         let kept = (of == TangentsOf::Displacements).then(|| forces.clone());
-        let loads = self.shape_loads(state, &velocities, forces);
+        let loads = self.shape_loads(state, (&velocities, traces.as_ref()), forces);
         let linearizations = &state.solution.linearizations;
         let mut found = tangents(&state.contact, linearizations, &loads);
         found.tangents.displacements = kept.map(|forces| displacement_tangents(&state.contact, forces, &loads, &found));

@@ -8,6 +8,7 @@
 //! ```
 //! A rotation of the tangential rows in their plane changes no force, so that its derivative is taken as zero.
 
+use crate::body::onto;
 use crate::equilibrium::ContactPoint;
 use crate::scene::Foot;
 
@@ -167,19 +168,6 @@ fn directions(free: &[[f64; 3]], normal: [f64; 3], count: usize) -> Vec<[f64; 3]
         }));
     }
     directions
-}
-
-/// The part of a vector along orthonormal directions; the vector itself if there are three.
-fn onto(free: &[[f64; 3]], vector: [f64; 3]) -> [f64; 3] {
-    if free.len() == 3 {
-        return vector;
-    }
-    let mut sum = [0.0; 3];
-    for direction in free {
-        let share = dot(*direction, vector);
-        (0..3).for_each(|axis| sum[axis] += share * direction[axis]);
-    }
-    sum
 }
 
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

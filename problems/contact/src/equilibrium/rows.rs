@@ -13,7 +13,7 @@ pub struct ContactRows {
     pub nodes: Vec<NodeRows>,
     /// What the rows of every contact between bodies are computed from; none for obstacles.
     pub(crate) pairs: Vec<Option<PairRows>>,
-    /// The numbers in the weighted displacements of every body.
+    /// The weights in the weighted displacements of every body.
     pub(crate) traces: Vec<TraceWeights>,
     /// Number of nodes that may open, which come first.
     pub(crate) contact_count: usize,
@@ -98,7 +98,8 @@ impl ContactRows {
     /// The jump of a contact node by what supports prescribe to the middle nodes in its weighted displacements, mm.
     pub(crate) fn prescribed_by_trace(&self, (point, node): (&ContactPoint, &NodeRows), bodies: &[Body]) -> [f64; 3] {
         let mut jump = [0.0; 3];
-        for (side, weight) in point.sides.iter().zip(&node.weights) {
+        let sides = point.sides.iter().zip(&node.weights);
+        for (side, weight) in sides.filter(|(side, _)| !bodies[side.body].trace.is_nodal(side.node)) {
             let (body, prescribed) = (&bodies[side.body], |node: u32| bodies[side.body].prescribed(node));
             let moved = body.trace.value(&self.traces[side.body], side.node, &prescribed);
             (0..3).for_each(|axis| jump[axis] += weight * (moved[axis] - side.prescribed[axis]));

@@ -9,6 +9,7 @@
 use crate::body::{Body, TraceWeights};
 use crate::equilibrium::row_work::NodeValues;
 use crate::equilibrium::{ContactProblem, ContactRows, Positions};
+use crate::mortar::vector::{dot, plus};
 use crate::shape::Velocities;
 
 /// The bodies of a shape whose weighted displacements change with it.
@@ -32,45 +33,17 @@ impl<'a> TraceWork<'a> {
         moving.map(|(number, (body, weights))| (number, body, weights))
     }
 
-    /// The changes of the numbers d along one field of velocities, by body.
-    pub fn changes(self, velocities: &Velocities<'_>, column: usize) -> Vec<TraceWeights> {
-        let mut changes = vec![TraceWeights::default(); self.rows.traces.len()];
-        for (number, body, weights) in self.bodies() {
-            let velocity = |node: u32| velocities.at(number, node, column);
-            changes[number] = body.trace.changes(weights, &self.positions[number], velocity);
-        }
-        changes
-    }
-
-    /// w′ of the corners for the displacements of all nodes, mm.
-    pub fn moved(self, changes: &[TraceWeights], u: &NodeValues) -> NodeValues {
-        let mut moved = NodeValues::zeros(changes.len());
-        for (number, body, _) in self.bodies() {
-            for corner in body.trace.corners() {
-                let mut sum = [0.0; 3];
-                for (middle, change) in body.trace.terms(&changes[number], corner) {
-                    let own = middle.value(&|node| u.of(number, node));
-                    (0..3).for_each(|axis| sum[axis] += change * own[axis]);
-                }
-                moved.0[number].insert(corner, body.trace.projected(corner, sum));
+    /// What fields of velocities change.
+    pub fn along(self, velocities: &Velocities<'_>) -> TraceChanges<'a> {
+        let change = |column: usize| {
+            let mut changes = vec![TraceWeights::default(); self.rows.traces.len()];
+            for (number, body, weights) in self.bodies() {
+                let velocity = |node: u32| velocities.at(number, node, column);
+                changes[number] = body.trace.changes(weights, &self.positions[number], velocity);
             }
-        }
-        moved
-    }
-
-    /// The forces on the nodes that forces on weighted displacements become by their changes.
-    pub fn forces(self, changes: &[TraceWeights], forces: &NodeValues) -> NodeValues {
-        let mut nodal = NodeValues::zeros(changes.len());
-        for (number, body, _) in self.bodies() {
-            for corner in body.trace.corners() {
-                let force = body.trace.projected(corner, forces.of(number, corner));
-                for (middle, change) in body.trace.terms(&changes[number], corner) {
-                    let mut add = |node: u32, force: [f64; 3]| nodal.add_to(number, node, force);
-                    middle.spread(force.map(|f| change * f), &mut add);
-                }
-            }
-        }
-        nodal
+            changes
+        };
+        TraceChanges { work: self, columns: (0..velocities.count()).map(change).collect() }
     }
 
     /// Adds the sensitivities of the positions of nodes by way of d, from forces F of λ and η, and the fields u and p.
@@ -85,7 +58,7 @@ impl<'a> TraceWork<'a> {
                 let work = |forces: &NodeValues, field: &NodeValues| {
                     let force = body.trace.projected(corner, forces.of(number, corner));
                     let own = middle.value(&|node| field.of(number, node));
-                    (0..3).map(|axis| force[axis] * own[axis]).sum::<f64>()
+                    dot(force, own)
                 };
                 work(of_lambda, p) + work(of_eta, u)
             });
@@ -104,5 +77,47 @@ impl<'a> TraceWork<'a> {
             }
         }
         values
+    }
+}
+
+/// The changes of weighted displacements along fields of velocities.
+#[derive(Debug)]
+pub(crate) struct TraceChanges<'a> {
+    pub work: TraceWork<'a>,
+    /// d′ by field and body.
+    columns: Vec<Vec<TraceWeights>>,
+}
+
+impl TraceChanges<'_> {
+    /// w′ of the corners along a field for the displacements of all nodes, mm.
+    pub fn moved(&self, column: usize, u: &NodeValues) -> NodeValues {
+        let changes = &self.columns[column];
+        let mut moved = NodeValues::zeros(changes.len());
+        for (number, body, _) in self.work.bodies() {
+            for corner in body.trace.corners() {
+                let terms = body.trace.terms(&changes[number], corner);
+                let sum = terms.fold([0.0; 3], |sum, (middle, change)| {
+                    plus(sum, change, middle.value(&|node| u.of(number, node)))
+                });
+                moved.0[number].insert(corner, body.trace.projected(corner, sum));
+            }
+        }
+        moved
+    }
+
+    /// The forces on the nodes that forces on weighted displacements become by their changes along a field.
+    pub fn forces(&self, column: usize, forces: &NodeValues) -> NodeValues {
+        let changes = &self.columns[column];
+        let mut nodal = NodeValues::zeros(changes.len());
+        for (number, body, _) in self.work.bodies() {
+            for corner in body.trace.corners() {
+                let force = body.trace.projected(corner, forces.of(number, corner));
+                for (middle, change) in body.trace.terms(&changes[number], corner) {
+                    let mut add = |node: u32, force: [f64; 3]| nodal.add_to(number, node, force);
+                    middle.spread(force.map(|f| change * f), &mut add);
+                }
+            }
+        }
+        nodal
     }
 }

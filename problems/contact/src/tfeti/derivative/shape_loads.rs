@@ -9,7 +9,7 @@ use crate::body::MOTIONS;
 use crate::body::shape_force::shape_forces;
 use crate::equilibrium::RowChange;
 use crate::equilibrium::row_work::{changed_forces, side_forces};
-use crate::equilibrium::trace_work::TraceWork;
+use crate::equilibrium::trace_work::TraceChanges;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
 use crate::linear::real::Real;
 use crate::shape::Velocities;
@@ -31,7 +31,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
         model: &TornModel,
         system: &TornSystem,
         shape: SolvedShape<'_>,
-        velocities: &Velocities<'_>,
+        (velocities, traces): (&Velocities<'_>, Option<&TraceChanges<'_>>),
         changes: &[Vec<RowChange>],
     ) -> Self {
         debug_assert!(velocities.count() <= LANES * N);
@@ -53,8 +53,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
             let scales = model.constraints.contact_scales(&model.problem.boundary);
             let lambda: Vec<f64> = shape.multipliers.contact().iter().zip(scales).map(|(row, nu)| row / nu).collect();
             let (rows, bodies) = ((&model.problem.boundary, shape.rows), model.problem.bodies.len());
-            let work = TraceWork::new(&model.problem, shape.rows, shape.positions);
-            let sides = work.map(|work| (work, side_forces(rows, &lambda, bodies)));
+            let sides = traces.map(|traces| (traces, side_forces(rows, &lambda, bodies)));
             for (column, changes) in changes.iter().enumerate() {
                 let changed = changed_forces(rows, &lambda, changes, bodies);
                 let mut add = |dof: usize, force: f64| {
@@ -62,8 +61,8 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
                     forces[dof].set(column, sum);
                 };
                 model.spread_contact(&model.nodal_forces(shape.rows, &changed), &mut add);
-                if let Some((work, sides)) = &sides {
-                    model.spread_contact(&work.forces(&work.changes(velocities, column), sides), &mut add);
+                if let Some((traces, sides)) = &sides {
+                    model.spread_contact(&traces.forces(column, sides), &mut add);
                 }
             }
         }

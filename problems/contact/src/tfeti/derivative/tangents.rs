@@ -13,7 +13,7 @@
 use crate::body::MOTIONS;
 use crate::equilibrium::law::{Friction, Linearization};
 use crate::equilibrium::row_work::{NodeValues, row_approaches};
-use crate::equilibrium::trace_work::TraceWork;
+use crate::equilibrium::trace_work::{TraceChanges, TraceWork};
 use crate::equilibrium::{Positions, RowChange, Tangents};
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
@@ -21,7 +21,6 @@ use crate::linear::entry::{Entry, LANES, Row};
 use crate::linear::gcr::gcr;
 use crate::linear::real::Real;
 use crate::linear::vector::add_scaled;
-use crate::shape::Velocities;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
@@ -155,8 +154,10 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         let velocities = operator.model.problem.map.velocities(changes);
         let of_column = |column| shape.rows.changes(contact.boundary, &velocities, column);
         let rows: Vec<Vec<RowChange>> = (0..changes.len()).map(of_column).collect();
-        let loads = ShapeLoads::new(operator.model, operator.system, shape, &velocities, &rows);
-        let approaches = approaches(operator.model, shape, &velocities, &rows);
+        let traces = TraceWork::new(&operator.model.problem, shape.rows, shape.positions);
+        let traces = traces.map(|work| work.along(&velocities));
+        let loads = ShapeLoads::new(operator.model, operator.system, shape, (&velocities, traces.as_ref()), &rows);
+        let approaches = approaches(operator.model, shape, traces.as_ref(), &rows);
         Self { contact, active, loads, approaches, count: changes.len() }
     }
 
@@ -346,7 +347,7 @@ impl<D, const N: usize> TangentIterate<D, N> {
 fn approaches<E: Real, const N: usize>(
     model: &TornModel,
     shape: SolvedShape<'_>,
-    velocities: &Velocities<'_>,
+    traces: Option<&TraceChanges<'_>>,
     changes: &[Vec<RowChange>],
 ) -> Vec<Row<E, N>> {
     let boundary = &model.problem.boundary;
@@ -354,10 +355,9 @@ fn approaches<E: Real, const N: usize>(
     let turned = !model.problem.geometry.is_fixed();
     let nodal = turned.then(|| model.contact_displacements(shape.displacement));
     let u = nodal.as_ref().map(|nodal| model.weighted(shape.rows, nodal));
-    let work = TraceWork::new(&model.problem, shape.rows, shape.positions).zip(nodal.as_ref());
-    let moved: Vec<Option<NodeValues>> = (0..changes.len())
-        .map(|column| work.map(|(work, nodal)| work.moved(&work.changes(velocities, column), nodal)))
-        .collect();
+    let traces = traces.zip(nodal.as_ref());
+    let moved = |column: usize| traces.map(|(traces, nodal)| traces.moved(column, nodal));
+    let moved: Vec<Option<NodeValues>> = (0..changes.len()).map(moved).collect();
     let nodes = boundary.points.iter().zip(&shape.rows.nodes).zip(&model.constraints.normalisation);
     for (index, ((point, rows), nu)) in nodes.enumerate() {
         for (column, change) in changes.iter().map(|nodes| &nodes[index]).enumerate() {

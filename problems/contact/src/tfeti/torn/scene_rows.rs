@@ -1,6 +1,6 @@
 //! The rows of B, one after the other: what glues, what supports, and what meets the counter surface.
 
-use crate::body::{Body, TraceWeights};
+use crate::body::{Body, TraceWeights, onto};
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows, NodeRows};
 use crate::tfeti::torn::copies::Copies;
 use crate::tfeti::torn::joints::Joints;
@@ -213,7 +213,7 @@ impl ContactNode {
         for (&(body, side), weight) in self.sides.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             let trace = &bodies[body].trace;
             let place = |node: u32| self.places.get(&(body, node)).copied();
-            if trace.support(side).len() == 1 {
+            if trace.is_nodal(side) {
                 place(side).into_iter().for_each(|part| vectors[part] = (direction, *weight));
             } else {
                 trace.spread(&rows.traces[body], side, direction.map(|d| weight * d), &mut |node, share| {
@@ -223,7 +223,7 @@ impl ContactNode {
             }
             let Some(own) = place(side).map(|part| &self.parts[part]) else { continue };
             // Entries w d/(mν); weights ω w d/(mν) with Σ ω w²|d|²/(mν²) = 1 and ω proportional to the compliance.
-            let (copies, square) = (own.copies.len() as f64, square(projected(&own.free, &direction)));
+            let (copies, square) = (own.copies.len() as f64, square(onto(&own.free, direction)));
             total += own.compliance * weight.powi(2) * square / (copies * nu * nu);
             let factor = weight / (copies * nu) * own.compliance;
             trace.hat(side, |node, share| place(node).into_iter().for_each(|part| hats[part] += share * factor));
@@ -232,8 +232,8 @@ impl ContactNode {
         for (part, ((vector, weight), hat)) in self.parts.iter().zip(vectors.iter().zip(&hats)) {
             let factor = weight / (part.copies.len() as f64 * nu);
             for &first in &part.copies {
-                row.extend(along(first, &projected(&part.free, vector), factor));
-                weighted.extend(along(first, &projected(&part.free, &direction), hat / total));
+                row.extend(along(first, &onto(&part.free, *vector), factor));
+                weighted.extend(along(first, &onto(&part.free, direction), hat / total));
             }
         }
         [row, weighted]
@@ -248,7 +248,7 @@ impl ContactNode {
                 let Some(&part) = self.places.get(&(body, node)) else { continue };
                 for direction in directions {
                     let own = if node == side { *direction } else { trace.projected(side, *direction) };
-                    let found = projected(&self.parts[part].free, &own);
+                    let found = onto(&self.parts[part].free, own);
                     (0..3).for_each(|axis| axes[part][axis] |= found[axis] != 0.0);
                 }
             }
@@ -265,18 +265,6 @@ impl ContactNode {
 /// ones.
 pub fn possible_directions(point: &ContactPoint, rows: &[[f64; 3]], are_fixed: bool) -> Vec<[f64; 3]> {
     if are_fixed { rows.to_vec() } else { point.free.clone() }
-}
-
-fn projected(free: &[[f64; 3]], direction: &[f64; 3]) -> [f64; 3] {
-    if free.len() == 3 {
-        return *direction;
-    }
-    let mut sum = [0.0; 3];
-    for own in free {
-        let share: f64 = (0..3).map(|axis| own[axis] * direction[axis]).sum();
-        (0..3).for_each(|axis| sum[axis] += share * own[axis]);
-    }
-    sum
 }
 
 fn square(a: [f64; 3]) -> f64 {
