@@ -9,7 +9,6 @@ use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::contact_objective::ContactObjective;
-use contact::contact_shape::AnyState;
 use contact::cost::LimitSide;
 use contact::error::SceneError;
 use contact::fields::Fields;
@@ -337,7 +336,7 @@ impl ContactScene {
 fn set_cases(
     result: &Bound<'_, PyDict>,
     objective: &ContactObjective,
-    states: &CaseStates<AnyState>,
+    states: &CaseStates,
     checked: &[(Vec<Warning>, Fields)],
 ) -> PyResult<()> {
     let py = result.py();
@@ -364,7 +363,7 @@ fn set_limits(
     result: &Bound<'_, PyDict>,
     objective: &ContactObjective,
     controls: &Vector,
-    states: &CaseStates<AnyState>,
+    states: &CaseStates,
 ) -> PyResult<()> {
     let limits = PyList::empty(result.py());
     for (limit, value) in objective.limits().zip(objective.limited_values(controls, states)) {

@@ -7,7 +7,7 @@
 //! factorisations to one product with F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, TangentsOf};
+use contact::equilibrium::{Configuration, ContactProblem, TangentsOf};
 use contact::scene::{Geometry, NormalKind, hertz, signorini};
 use contact::tfeti::{DualOperator, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};

@@ -4,10 +4,8 @@ use crate::body::mesh::smallest_extent;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
 use crate::cost::{ContactAreas, Limit, LimitedQuantity, Measure, PressureCost};
-use crate::equilibrium::ContactSolver;
 use crate::error::SceneError;
 use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCases, Over, WeightedCase};
-use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::nonlinear::ConstraintPiece;
 use nonsmooth::{
@@ -24,19 +22,19 @@ const LARGEST_FIRST_STEP: f64 = 0.5;
 /// Θ of a scene: a measure of the contact states that the controls lead to, one per load case, with limits beside it.
 /// Where a pressure norm may lie outside the range of doubles, Θ is made of p-th roots.
 #[derive(Debug)]
-pub struct ContactObjective<S: ContactSolver = AnySolver> {
-    composed: CompositeObjective<LoadCases<S>, CasesCost>,
+pub struct ContactObjective {
+    composed: CompositeObjective<LoadCases, CasesCost>,
     /// The limits in the order of the constraints of the optimizer: those that are functions of the outputs first.
     bounds: Vec<Bound>,
     kinds: Vec<ConstraintKind>,
 }
 
-impl<S: ContactSolver> ContactObjective<S> {
+impl ContactObjective {
     /// A measure of the states of one map, with limits beside it.
     ///
     /// # Errors
     /// As [`of_cases`](Self::of_cases).
-    pub fn new(shape: ContactShape<S>, measure: Measure, limits: &[Limit]) -> Result<Self, SceneError> {
+    pub fn new(shape: ContactShape, measure: Measure, limits: &[Limit]) -> Result<Self, SceneError> {
         let case = LoadCase { name: String::new(), weight: 1.0, shape, measure };
         Self::of_cases(vec![case], Over::Worst, limits)
     }
@@ -46,8 +44,8 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// # Errors
     /// As [`CasesCost::new`]; [`SceneError::OutOfRange`] for a limit of an unknown case, a bound that means nothing,
     /// and cases whose controls differ in number.
-    pub fn of_cases(cases: Vec<LoadCase<S>>, over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
-        let weighted = |case: &LoadCase<S>| (case.weight, case.measure.clone());
+    pub fn of_cases(cases: Vec<LoadCase>, over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
+        let weighted = |case: &LoadCase| (case.weight, case.measure.clone());
         let plain: Vec<(f64, Measure)> = cases.iter().map(weighted).collect();
         let parts = plain.into_iter().zip(&cases).map(|((weight, measure), case)| WeightedCase {
             name: &case.name,
@@ -75,7 +73,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// The values of the limited quantities at states already found, in the order of [`Self::limits`].
-    pub fn limited_values(&self, control: &Vector, states: &CaseStates<S::State>) -> Vec<f64> {
+    pub fn limited_values(&self, control: &Vector, states: &CaseStates) -> Vec<f64> {
         let problem = |case: usize| self.cases().case(case).problem();
         self.bounds.iter().map(|bound| bound.value(problem(bound.case), control, &states[bound.case])).collect()
     }
@@ -84,7 +82,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     fn add_constraints(
         &self,
         control: &Vector,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
         evaluation: &mut Evaluation<Vec<ContactWarmStart>>,
     ) -> Result<(), OracleError> {
         let first = self.composed.cost().constraint_kinds().len();
@@ -109,7 +107,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// The map from controls to the states of all cases.
-    pub fn cases(&self) -> &LoadCases<S> {
+    pub fn cases(&self) -> &LoadCases {
         self.composed.solver()
     }
 
@@ -119,7 +117,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// The map of the first case, whose shape and controls are those of all.
-    pub fn solver(&self) -> &ContactShape<S> {
+    pub fn solver(&self) -> &ContactShape {
         self.cases().case(0)
     }
 
@@ -132,23 +130,23 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// Θ at states already found.
-    pub fn value(&self, states: &CaseStates<S::State>) -> f64 {
+    pub fn value(&self, states: &CaseStates) -> f64 {
         self.composed.value(states)
     }
 
     /// The first of the worst cases at states already found.
-    pub fn worst(&self, states: &CaseStates<S::State>) -> usize {
+    pub fn worst(&self, states: &CaseStates) -> usize {
         self.cost().worst(&self.cases().outputs(states))
     }
 
     /// w_k J_k of every case at states already found: Θ is the largest of them, or their sum.
-    pub fn weighted_values(&self, states: &CaseStates<S::State>) -> Vec<f64> {
+    pub fn weighted_values(&self, states: &CaseStates) -> Vec<f64> {
         self.cost().weighted(&self.cases().outputs(states))
     }
 
     /// The gradients of the cost by the controls at fixed states, and by the states at fixed controls, y*: what the
     /// coderivative is asked for.
-    pub fn cost_gradient(&self, control: &Vector, states: &CaseStates<S::State>) -> CostGradient {
+    pub fn cost_gradient(&self, control: &Vector, states: &CaseStates) -> CostGradient {
         self.composed.cost_gradient(control, states)
     }
 
@@ -159,7 +157,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     pub fn differentiate(
         &self,
         control: &Vector,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
     ) -> Result<Evaluation<Vec<ContactWarmStart>>, OracleError> {
         self.composed.differentiate(control, states)
     }
@@ -172,7 +170,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     pub fn differentiate_with_limits(
         &self,
         control: &Vector,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
     ) -> Result<Evaluation<Vec<ContactWarmStart>>, OracleError> {
         let mut evaluation = self.composed.evaluate_at(&Request::tight(control), states)?;
         self.add_constraints(control, states, &mut evaluation)?;
@@ -184,17 +182,13 @@ impl<S: ContactSolver> ContactObjective<S> {
     ///
     /// # Errors
     /// As [`ContactShape::position_sensitivity`].
-    pub fn position_sensitivity(
-        &self,
-        control: &Vector,
-        states: &CaseStates<S::State>,
-    ) -> Result<Vec<[f64; 3]>, OracleError> {
+    pub fn position_sensitivity(&self, control: &Vector, states: &CaseStates) -> Result<Vec<[f64; 3]>, OracleError> {
         let weights = self.cost().subgradient(&self.cases().outputs(states));
         self.cases().position_sensitivity(control, states, &weights)
     }
 
     /// σ per contact node of a case, MPa.
-    pub fn pressures(&self, state: &ContactState<S::State>) -> Vec<f64> {
+    pub fn pressures(&self, state: &ContactState) -> Vec<f64> {
         state.rows.pressures(&state.forces.normal)
     }
 
@@ -204,15 +198,15 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// Why Θ does not change near states of contact, where more is known than that its derivative is zero.
-    pub(crate) fn why_flat(&self, states: &CaseStates<S::State>) -> Option<String> {
+    pub(crate) fn why_flat(&self, states: &CaseStates) -> Option<String> {
         let worst = self.worst(states);
         self.pressure(worst)?.why_flat(&states[worst])
     }
 
     /// The least value that the total normal forces of some states leave possible, unit of Θ; none for functions of the
     /// displacements, and where normals or areas change with the shape.
-    pub fn lower_bound(&self, states: &CaseStates<S::State>) -> Option<f64> {
-        let bound = |(case, state): (usize, &ContactState<S::State>)| {
+    pub fn lower_bound(&self, states: &CaseStates) -> Option<f64> {
+        let bound = |(case, state): (usize, &ContactState)| {
             let fixed = self.cases().case(case).problem().geometry.is_fixed();
             let cost = self.pressure(case).filter(|_| fixed)?;
             Some(self.cost().weight(case) * cost.lower_bound(state.forces.total_normal_force())?)
@@ -258,7 +252,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 
     /// The contact areas of a state of a case, where the open area is what is minimised.
-    pub fn contact_areas(&self, case: usize, state: &ContactState<S::State>) -> Option<ContactAreas> {
+    pub fn contact_areas(&self, case: usize, state: &ContactState) -> Option<ContactAreas> {
         self.pressure(case)?.contact_areas(state)
     }
 
@@ -303,7 +297,7 @@ impl<S: ContactSolver> ContactObjective<S> {
     }
 }
 
-impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
+impl NonsmoothObjective for ContactObjective {
     type WarmStart = Vec<ContactWarmStart>;
 
     fn dimension(&self) -> usize {

@@ -10,9 +10,7 @@
 //! out, and nothing is computed for them.
 
 use crate::cost::PressureOutputs;
-use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, Tangents, TangentsOf, ValueError,
-};
+use crate::equilibrium::{ContactProblem, ContactStatus, Diagnosis, SolvedBody, Tangents, TangentsOf, ValueError};
 use crate::error::{ContactError, SceneError};
 use crate::fields::{Fields, Resultants};
 use crate::plausibility::{self, Estimates, Warning};
@@ -27,15 +25,15 @@ use nonsmooth::{
 use std::sync::atomic::Ordering;
 
 pub use crate::equilibrium::ContactWarmStart;
-pub use crate::solvers::{AnySolver, AnyState, SolverKind};
+pub use crate::solvers::{Solver, SolverKind, SolverState};
 
-/// A solved shape; by default by a solver whose kind was chosen when the program ran.
-pub type ContactState<S = AnyState> = crate::equilibrium::ContactState<S>;
+/// A solved shape.
+pub type ContactState = crate::equilibrium::ContactState<SolverState>;
 
-/// The control-to-state map of a scene by a contact solver; by default of a kind that is chosen when the program runs.
+/// The control-to-state map of a scene by a contact solver.
 #[derive(Debug)]
-pub struct ContactShape<S: ContactSolver = AnySolver> {
-    solver: S,
+pub struct ContactShape {
+    solver: Solver,
     /// Whether states hold the displacements of all bodies.
     displacements: bool,
     outputs: PressureOutputs,
@@ -62,12 +60,10 @@ impl ContactShape {
     pub fn new(scene: Scene, kind: SolverKind) -> Result<Self, SceneError> {
         Ok(Self::by(Processes::alone().solver(SolverPlan::new(scene, kind))?))
     }
-}
 
-impl<S: ContactSolver> ContactShape<S> {
     /// The map by a given solver.
-    pub fn by(solver: S) -> Self {
-        Self { solver, displacements: false, outputs: PressureOutputs::default() }
+    pub fn by(solver: impl Into<Solver>) -> Self {
+        Self { solver: solver.into(), displacements: false, outputs: PressureOutputs::default() }
     }
 
     /// Lets the states hold the displacements of all bodies as well: for costs of the displacements.
@@ -89,7 +85,7 @@ impl<S: ContactSolver> ContactShape<S> {
     }
 
     /// The contact solver behind the map.
-    pub fn contact_solver(&self) -> &S {
+    pub fn contact_solver(&self) -> &Solver {
         &self.solver
     }
 
@@ -107,7 +103,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ///
     /// # Errors
     /// [`OracleError::Failed`] and [`OracleError::NotConverged`] from the linear systems.
-    pub fn diagnose(&self, state: &ContactState<S::State>) -> Result<Diagnosis, OracleError> {
+    pub fn diagnose(&self, state: &ContactState) -> Result<Diagnosis, OracleError> {
         self.solver.diagnose(&state.solution).map_err(oracle)
     }
 
@@ -115,7 +111,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
-    pub fn warnings(&self, state: &ContactState<S::State>) -> Result<Vec<Warning>, OracleError> {
+    pub fn warnings(&self, state: &ContactState) -> Result<Vec<Warning>, OracleError> {
         let products = (CHECKS_SHARE * state.work().dual_operator_applications as f64) as usize;
         let friction = self.problem().boundary.has_friction();
         // An estimate that fails says nothing.
@@ -159,7 +155,7 @@ impl<S: ContactSolver> ContactShape<S> {
     pub fn pull_back(
         &self,
         control: &Vector,
-        state: &ContactState<S::State>,
+        state: &ContactState,
         direction: &Vector,
     ) -> Result<(Vector, ValueError), OracleError> {
         self.check_dimension(control)?;
@@ -175,7 +171,7 @@ impl<S: ContactSolver> ContactShape<S> {
     /// As [`ContactShape::pull_back`].
     pub fn position_sensitivity(
         &self,
-        state: &ContactState<S::State>,
+        state: &ContactState,
         direction: &Vector,
     ) -> Result<(Vec<[f64; 3]>, ValueError), OracleError> {
         let (expected, found) = (self.problem().boundary.row_count, direction.len());
@@ -192,7 +188,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
-    pub fn fields(&self, state: &ContactState<S::State>) -> Result<Fields, OracleError> {
+    pub fn fields(&self, state: &ContactState) -> Result<Fields, OracleError> {
         Ok(Fields::new(self.problem(), self.bodies(state)?, (&state.rows, &state.forces)))
     }
 
@@ -200,7 +196,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
-    pub fn resultants(&self, state: &ContactState<S::State>) -> Result<Resultants, OracleError> {
+    pub fn resultants(&self, state: &ContactState) -> Result<Resultants, OracleError> {
         Ok(Resultants::new(self.problem(), &self.bodies(state)?, (&state.rows, &state.forces)))
     }
 
@@ -208,7 +204,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
-    pub fn bodies(&self, state: &ContactState<S::State>) -> Result<Vec<SolvedBody>, OracleError> {
+    pub fn bodies(&self, state: &ContactState) -> Result<Vec<SolvedBody>, OracleError> {
         state.bodies.clone().map_or_else(|| self.solver.bodies(&state.solution).map_err(oracle), Ok)
     }
 
@@ -216,7 +212,7 @@ impl<S: ContactSolver> ContactShape<S> {
     pub(crate) fn output_position_gradient(
         &self,
         control: &Vector,
-        state: &ContactState<S::State>,
+        state: &ContactState,
         weights: &Vector,
     ) -> Vec<[f64; 3]> {
         let problem = self.problem();
@@ -229,12 +225,7 @@ impl<S: ContactSolver> ContactShape<S> {
     ///
     /// # Errors
     /// [`OracleError`] when the linearized problems have no solution.
-    pub fn tangents(
-        &self,
-        state: &ContactState<S::State>,
-        of: TangentsOf,
-        accuracy: Accuracy,
-    ) -> Result<Tangents, OracleError> {
+    pub fn tangents(&self, state: &ContactState, of: TangentsOf, accuracy: Accuracy) -> Result<Tangents, OracleError> {
         let changes = unit_changes(self.control_dimension());
         let tangents = self.solver.tangents(&state.solution, &changes, of, accuracy.tolerance()).map_err(oracle)?;
         state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
@@ -248,7 +239,7 @@ impl<S: ContactSolver> ContactShape<S> {
     pub fn linearize_by(
         &self,
         control: &Vector,
-        state: &ContactState<S::State>,
+        state: &ContactState,
         tangents: &Tangents,
     ) -> Result<Linearization, OracleError> {
         self.check_dimension(control)?;
@@ -277,8 +268,8 @@ impl<S: ContactSolver> ContactShape<S> {
     }
 }
 
-impl<S: ContactSolver> StateSolver for ContactShape<S> {
-    type State = ContactState<S::State>;
+impl StateSolver for ContactShape {
+    type State = ContactState;
     type WarmStart = ContactWarmStart;
 
     fn control_dimension(&self) -> usize {
@@ -316,7 +307,7 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
     }
 }
 
-impl<S: ContactSolver> Coderivative for ContactShape<S> {
+impl Coderivative for ContactShape {
     fn coderivative(
         &self,
         control: &Vector,
@@ -330,7 +321,7 @@ impl<S: ContactSolver> Coderivative for ContactShape<S> {
 
 /// The outputs are the contact pressures σ = λ_N/A per contact node, MPa, or those of a cost
 /// ([`ContactShape::with_outputs`]); the slacks are gaps of open nodes, mm.
-impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
+impl OutputJacobian for ContactShape {
     fn outputs(&self, state: &Self::State) -> Vector {
         Vector::from_vec(self.outputs.values(&state.forces.normal, &state.rows.areas()))
     }

@@ -1,7 +1,7 @@
 //! Why an optimization ended where it began.
 
 use crate::contact_objective::ContactObjective;
-use crate::equilibrium::{ContactSolver, ContactStatus};
+use crate::equilibrium::ContactStatus;
 use crate::load_cases::CaseStates;
 use crate::plausibility::Warning;
 use nonsmooth::{OracleError, Report, Termination, Vector};
@@ -19,11 +19,11 @@ const IDLE: &str = "nothing loads the bodies; give loads to the scene";
 ///
 /// # Errors
 /// [`OracleError`] of the adjoint.
-pub fn standstill<'r, S: ContactSolver>(
+pub fn standstill<'r>(
     reports: impl IntoIterator<Item = &'r Report>,
-    objective: &ContactObjective<S>,
+    objective: &ContactObjective,
     start: &Vector,
-    end: (&Vector, &CaseStates<S::State>),
+    end: (&Vector, &CaseStates),
 ) -> Result<Option<Warning>, OracleError> {
     let stood_still = |report: &Report| {
         let termination = &report.termination;
@@ -59,7 +59,7 @@ pub fn standstill<'r, S: ContactSolver>(
 }
 
 /// Why Θ does not change near some states, where more is known than that its derivative is zero.
-fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, states: &CaseStates<S::State>) -> Option<String> {
+fn why_flat(objective: &ContactObjective, states: &CaseStates) -> Option<String> {
     let mut status = states.iter().flat_map(|state| &state.forces.status);
     if status.all(|status| *status == ContactStatus::Open) {
         let reason = "the bodies do not touch there; bring them together by loads, the start or the counter surface";

@@ -6,7 +6,7 @@ use crate::commands::failure::Failure;
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::plain_unit;
 use contact::communication::InProcess;
-use contact::contact_shape::{AnyState, ContactState};
+use contact::contact_shape::ContactState;
 use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::load_cases::CaseStates;
@@ -70,7 +70,7 @@ pub struct SolvedShape {
     /// Controls of the shape, mm.
     pub controls: Vector,
     /// The contact states of the shape in all load cases.
-    pub states: CaseStates<AnyState>,
+    pub states: CaseStates,
     /// The case that is worst: the first with the largest weighted measure.
     pub worst: usize,
     /// The objective Θ at the shape.

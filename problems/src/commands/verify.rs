@@ -8,7 +8,6 @@ use crate::commands::loaded_scene::Session;
 use crate::commands::numbers::rounded;
 use crate::commands::solved_shape::{self, ContactObjective};
 use contact::body::mesh::smallest_extent;
-use contact::contact_shape::AnyState;
 use contact::equilibrium::Residuals;
 use contact::load_cases::CaseStates;
 use contact::solvers::Usage;
@@ -103,7 +102,7 @@ fn rest(result: &VerificationJson) -> String {
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
-) -> Result<(CaseStates<AnyState>, f64, TaylorTest), Failure> {
+) -> Result<(CaseStates, f64, TaylorTest), Failure> {
     let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
     let here = objective.cases().solve(control, None, Accuracy::TIGHTEST)?;
     let step = smooth_step(objective, control, &direction, &here)?;
@@ -121,7 +120,7 @@ fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,
     direction: &Vector,
-    here: &CaseStates<AnyState>,
+    here: &CaseStates,
 ) -> Result<f64, Failure> {
     let problem = objective.solver().problem();
     let size = match problem.scene.heights() {

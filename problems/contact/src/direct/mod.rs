@@ -20,6 +20,7 @@ mod displacement_tangents;
 mod force_rounding;
 mod forces;
 mod newton;
+mod questions;
 mod recovery;
 #[cfg(feature = "interior-point")]
 mod resistance;
@@ -33,5 +34,4 @@ pub use condensation_key::CondensedShelf;
 pub use cone_programs::by_cone_programs;
 #[cfg(feature = "interior-point")]
 pub use resistance::resistance;
-pub use solver::DirectSolver;
-pub(crate) use solver::DirectState;
+pub use solver::{DirectSolver, DirectState};

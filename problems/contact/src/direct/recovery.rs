@@ -12,7 +12,7 @@ impl DirectSolver {
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh.
-    pub(super) fn whole_bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
+    pub fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
         self.check(state)?;
         let bodies = self.problem.bodies.iter().enumerate();
         let solved = bodies.map(|(number, body)| SolvedBody {
@@ -49,7 +49,7 @@ impl DirectState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::equilibrium::{ContactProblem, ContactSolver};
+    use crate::equilibrium::ContactProblem;
     use crate::scene::hertz;
     use std::sync::Arc;
 
@@ -66,7 +66,7 @@ mod tests {
         let places: Vec<*const f64> = (0..2).map(|body| state.displacement(body).as_ptr()).collect();
         let mut dual = vec![0.0; problem.boundary.row_count];
         dual.extend(bodies.iter().flat_map(|body| body.displacement.as_flattened()));
-        solver.sensitivities(&state, &dual, 1e-10).expect("an adjoint");
+        solver.sensitivities(&state, &dual).expect("an adjoint");
         assert_eq!((0..2).map(|body| state.displacement(body).as_ptr()).collect::<Vec<_>>(), places);
         assert_eq!(solver.bodies(&state).expect("bodies"), bodies);
     }

@@ -1,23 +1,15 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
-use crate::direct::adjoint::adjoint;
 use crate::direct::compliant_body::{BodyLoad, BodyRows, CompliantBody, ContactBody, contact_stiffness};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::CondensationPattern;
 use crate::direct::condensation_key::{CondensationKey, CondensedShelf};
 use crate::direct::continuation::Reached;
 use crate::direct::continuation::equilibrium;
-use crate::direct::diagnosis::{diagnose, estimate_contraction};
-use crate::direct::displacement_load::CondensedLoad;
-use crate::direct::displacement_tangents::displacement_tangents;
-use crate::direct::force_rounding::change_of_forces;
 use crate::direct::forces::{CondensedSolution, forces};
 use crate::direct::newton::FLOOR_REACHED;
-use crate::direct::tangents::{CondensedTangents, tangents};
-use crate::equilibrium::trace_work::TraceWork;
 use crate::equilibrium::{
-    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, ForceUnit, Positions,
-    Sensitivities, SolvedBody, SolverState, Stage, Tangents, TangentsOf, ValueError, Work,
+    Configuration, ContactProblem, ContactState, ContactWarmStart, ForceUnit, Positions, Stage, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
@@ -28,7 +20,6 @@ use nonsmooth::interruption::interrupted;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 
 /// How states are found by Newton's method.
 const BY_NEWTON: &str = "semismooth Newton on condensed bodies, with continuation in the contact compliance";
@@ -58,7 +49,7 @@ pub struct DirectState {
     pub(super) contact: CompliantContact,
     pub(super) solution: CondensedSolution,
     /// Force that residuals are relative to, N; zero for bodies at rest.
-    load: f64,
+    pub(super) load: f64,
     /// Displacements over the dofs of the bodies, once they have been asked for.
     pub(super) displacements: Vec<OnceLock<Vec<f64>>>,
 }
@@ -241,22 +232,27 @@ impl DirectSolver {
     }
 }
 
-impl ContactSolver for DirectSolver {
-    type State = DirectState;
-
-    fn problem(&self) -> &ContactProblem {
+impl DirectSolver {
+    /// The problem that is solved.
+    pub fn problem(&self) -> &ContactProblem {
         &self.problem
     }
 
-    fn sizes(&self) -> [usize; 2] {
+    /// Number of degrees of freedom of all bodies, and number of multipliers.
+    pub fn sizes(&self) -> [usize; 2] {
         [self.problem.displacement_count(), self.problem.boundary.row_count]
     }
 
-    fn left_out(&self) -> Option<&'static str> {
-        Some("tearing, gluing, dual operator (direct condensation)")
+    /// What this solver did not need for its scene, in words.
+    pub fn left_out(&self) -> &'static str {
+        "tearing, gluing, dual operator (direct condensation)"
     }
 
-    fn solve(
+    /// As [`Solver::solve`](crate::solvers::Solver::solve).
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium, no convergence.
+    pub fn solve(
         &self,
         controls: &[f64],
         start: Option<&ContactWarmStart>,
@@ -269,108 +265,6 @@ impl ContactSolver for DirectSolver {
         self.solve_configuration(Configuration::new(&self.problem, controls)?, start, tolerance)
     }
 
-    fn sensitivities(
-        &self,
-        state: &DirectState,
-        direction: &[f64],
-        _tolerance: f64,
-    ) -> Result<Sensitivities, ContactError> {
-        self.check(state)?;
-        let (direction, displacements) = self.problem.parts_of(direction)?;
-        if state.load == 0.0 {
-            return Ok(Sensitivities::at_rest(&self.problem));
-        }
-        let clock = Instant::now();
-        Stage::Adjoint.enter()?;
-        let solution = &state.solution;
-        let loads = displacements.map_or_else(Vec::new, |displacements| self.condensed_loads(state, displacements));
-        let adjoint = adjoint(&state.contact, &solution.unknowns, &solution.linearizations, direction, &loads);
-        let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
-        let value_error = value_error.with_displacements(loads.iter().map(|load| load.size).sum());
-        let mut loads: Vec<Vec<f64>> = loads.into_iter().map(|load| load.full).collect();
-        let extended = |body: usize| {
-            let none = || vec![0.0; state.displacement(body).len()];
-            let load = loads.get_mut(body).map_or_else(none, std::mem::take);
-            let (own, on_contact) = (&self.problem.bodies[body], &adjoint.displacements[body]);
-            let p = state.contact.bodies[body].extend_under(own, on_contact, &adjoint.multipliers, &load);
-            (body, p)
-        };
-        let adjoint_displacements: Vec<(usize, Vec<f64>)> = self.problem.map.shaped_bodies().map(extended).collect();
-        let adjoint_seconds = clock.elapsed().as_secs_f64();
-        Stage::ShapeDerivative.enter()?;
-        let positions = self.shape_derivative(state, &adjoint_displacements, &adjoint);
-        if positions.as_flattened().iter().any(|value| !value.is_finite()) {
-            return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
-        }
-        let shape_seconds = clock.elapsed().as_secs_f64() - adjoint_seconds;
-        Ok(Sensitivities { positions, applications: 0, adjoint_seconds, shape_seconds, value_error })
-    }
-
-    fn tangents(
-        &self,
-        state: &DirectState,
-        changes: &[Vec<f64>],
-        of: TangentsOf,
-        _tolerance: f64,
-    ) -> Result<Tangents, ContactError> {
-        self.check(state)?;
-        self.problem.check_changes(changes)?;
-        let velocities = self.problem.map.velocities(changes);
-        if state.load == 0.0 {
-            return Ok(Tangents::at_rest(&self.problem, &state.contact.rows, &velocities, of));
-        }
-        Stage::Adjoint.enter()?;
-        let traces = TraceWork::new(&self.problem, &state.contact.rows, &state.positions);
-        let traces = traces.map(|work| work.along(&velocities));
-        let forces = self.shape_forces(state, &velocities, traces.as_ref());
-        // Condensing them takes their place, so that what needs them again has a copy.
-        let kept = (of == TangentsOf::Displacements).then(|| forces.clone());
-        let loads = self.shape_loads(state, (&velocities, traces.as_ref()), forces);
-        let linearizations = &state.solution.linearizations;
-        let mut found = tangents(&state.contact, linearizations, &loads);
-        found.tangents.displacements = kept.map(|forces| displacement_tangents(&state.contact, forces, &loads, &found));
-        let CondensedTangents { tangents, .. } = found;
-        let displacements = tangents.displacements.iter().flatten();
-        let entries = tangents.forces.iter().chain(&tangents.openings).chain(displacements).flatten();
-        if entries.copied().any(|entry| !entry.is_finite()) {
-            return Err(ContactError::NotFinite { what: "tangents of the condensed state" });
-        }
-        Ok(tangents)
-    }
-
-    fn diagnose(&self, state: &DirectState) -> Result<Diagnosis, ContactError> {
-        self.check(state)?;
-        if state.load == 0.0 {
-            return Ok(Diagnosis { contraction: 0.0, condition: None });
-        }
-        diagnose(&state.contact, &state.solution.linearizations)
-    }
-
-    fn estimate_contraction(&self, state: &DirectState, _max_products: usize) -> Result<f64, ContactError> {
-        self.check(state)?;
-        if state.load == 0.0 {
-            return Ok(0.0);
-        }
-        Ok(estimate_contraction(&state.contact, &state.solution.unknowns, &state.solution.linearizations))
-    }
-
-    fn force_rounding(&self, state: &DirectState) -> Result<f64, ContactError> {
-        self.check(state)?;
-        if state.load == 0.0 {
-            return Ok(0.0);
-        }
-        let (contact, solution) = (&state.contact, &state.solution);
-        let parts = contact.bodies.iter().zip(self.problem.bodies.iter().zip(&state.positions));
-        let delta = parts.map(|(own, (body, positions))| own.refinement(body, positions, &solution.forces));
-        Ok(change_of_forces(contact, &solution.linearizations, &delta.collect::<Vec<_>>()))
-    }
-
-    fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
-        self.whole_bodies(state)
-    }
-}
-
-impl DirectSolver {
     /// Checks that a state is one of this problem's mesh.
     ///
     /// # Errors
@@ -385,26 +279,11 @@ impl DirectSolver {
         }
         Ok(())
     }
-
-    /// ∂J/∂u of all bodies as loads on them.
-    fn condensed_loads(&self, state: &DirectState, displacements: &[f64]) -> Vec<CondensedLoad> {
-        let mut rest = displacements;
-        let load = |number: usize| {
-            let (body, piece) = (&self.problem.bodies[number], &self.patterns[number].piece);
-            let (own, others) = rest.split_at(3 * body.mesh.node_count());
-            rest = others;
-            let mut load = vec![0.0; piece.dof_count()];
-            for (node, force) in own.as_chunks::<3>().0.iter().enumerate() {
-                piece.add_force(node as u32, *force, &mut load);
-            }
-            CondensedLoad::new((body, state.contact.bodies[number].stiff()), load, state.displacement(number))
-        };
-        (0..self.patterns.len()).map(load).collect()
-    }
 }
 
-impl SolverState for DirectState {
-    fn warm_start(&self) -> ContactWarmStart {
+impl DirectState {
+    /// Displacements at the contact, from which a similar shape can be solved.
+    pub fn warm_start(&self) -> ContactWarmStart {
         ContactWarmStart::Displacements(self.solution.displacement.clone())
     }
 }

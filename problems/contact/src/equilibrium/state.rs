@@ -6,7 +6,6 @@ use crate::equilibrium::{
 use crate::error::ContactError;
 use crate::solvers::SolverKind;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -80,12 +79,6 @@ pub struct StageSeconds {
     pub recovery: f64,
 }
 
-/// What a solver keeps of a solved shape.
-pub trait SolverState: fmt::Debug + Send + Sync {
-    /// What a similar shape can be solved from.
-    fn warm_start(&self) -> ContactWarmStart;
-}
-
 /// What restarts a solve nearby.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -96,7 +89,7 @@ pub enum ContactWarmStart {
     Displacements(Vec<f64>),
 }
 
-/// A solved shape; `S` is what its solver keeps ([`ContactSolver::State`](crate::equilibrium::ContactSolver::State)).
+/// A solved shape; `S` is what its solver keeps of it.
 #[derive(Debug)]
 pub struct ContactState<S> {
     /// Contact forces with status and certificates.

@@ -5,7 +5,7 @@ use crate::cost::{
     FieldCost, FieldMeasure, FieldPiece, Limit, LimitSide, LimitedQuantity, PressureCost, PressureMeasure, volume,
     volume_gradient,
 };
-use crate::equilibrium::{ContactProblem, ContactSolver, ContactState};
+use crate::equilibrium::{ContactProblem, ContactState};
 use crate::error::SceneError;
 use crate::load_cases::{CaseStates, LoadCases};
 use nonsmooth::composite::OuterFunction;
@@ -118,11 +118,11 @@ impl Bound {
     ///
     /// # Errors
     /// [`OracleError`] of the adjoint.
-    pub(crate) fn linearized<S: ContactSolver>(
+    pub(crate) fn linearized(
         &self,
-        cases: &LoadCases<S>,
+        cases: &LoadCases,
         control: &Vector,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
     ) -> Result<Linearized, OracleError> {
         let (problem, state) = (cases.case(self.case).problem(), &states[self.case]);
         if let Some((value, gradient)) = self.of_shape(problem, control) {
@@ -161,12 +161,7 @@ impl Bound {
     }
 
     /// By forward derivatives of the displacements: all points near the extreme one. None where these are not known.
-    fn by_tangents<S: ContactSolver>(
-        &self,
-        cost: &FieldCost,
-        cases: &LoadCases<S>,
-        states: &CaseStates<S::State>,
-    ) -> Option<Linearized> {
+    fn by_tangents(&self, cost: &FieldCost, cases: &LoadCases, states: &CaseStates) -> Option<Linearized> {
         let tangents = states.tangents(self.case).filter(|_| self.has_pieces())?;
         let map = &cases.case(self.case).problem().map;
         let changes = unit_changes(states.control.len());

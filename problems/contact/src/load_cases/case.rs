@@ -2,8 +2,7 @@
 
 use crate::contact_shape::ContactShape;
 use crate::cost::Measure;
-use crate::equilibrium::{ContactProblem, ContactSolver};
-use crate::solvers::AnySolver;
+use crate::equilibrium::ContactProblem;
 use nonsmooth::OracleError;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -22,13 +21,13 @@ pub enum Over {
 
 /// A load case: its contact problem with a solver, and what it counts.
 #[derive(Debug)]
-pub struct LoadCase<S: ContactSolver = AnySolver> {
+pub struct LoadCase {
     /// What reports call it; empty for the only case of a scene.
     pub name: String,
     /// The factor w > 0 of its measure.
     pub weight: f64,
     /// The map from controls to states under its loads.
-    pub shape: ContactShape<S>,
+    pub shape: ContactShape,
     /// What its states are rated by: the same kind of measure for all cases.
     pub measure: Measure,
 }

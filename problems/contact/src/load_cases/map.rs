@@ -2,11 +2,10 @@
 
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 use crate::cost::{FieldCost, volume, volume_gradient, volume_slope};
-use crate::equilibrium::{ContactSolver, TangentsOf};
+use crate::equilibrium::TangentsOf;
 use crate::load_cases::case::named;
 use crate::load_cases::threads::on_all;
 use crate::load_cases::{CaseCost, CaseStates, CasesCost, LoadCase};
-use crate::solvers::AnySolver;
 use nonsmooth::composite::{InactiveConstraints, Linearization};
 use nonsmooth::{
     Accuracy, Coderivative, CostGradient, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver,
@@ -18,8 +17,8 @@ use std::ops::Range;
 /// after the other ([`crate::contact_shape`]); so are its outputs, after which the volume of the lower body (mm³)
 /// follows where it is the objective, and the rows of its bending where that counts.
 #[derive(Debug)]
-pub struct LoadCases<S: ContactSolver = AnySolver> {
-    cases: Vec<OneCase<S>>,
+pub struct LoadCases {
+    cases: Vec<OneCase>,
     with_volume: bool,
     /// Linear functions of the controls that follow as outputs.
     fairness: Option<Matrix>,
@@ -27,9 +26,9 @@ pub struct LoadCases<S: ContactSolver = AnySolver> {
 
 /// A case as the map needs it.
 #[derive(Debug)]
-struct OneCase<S: ContactSolver> {
+struct OneCase {
     name: String,
-    shape: ContactShape<S>,
+    shape: ContactShape,
     /// Whether functions of the pressures are outputs.
     with_pressures: bool,
     /// Whether the measure is an output of its own, after the pressures.
@@ -38,8 +37,8 @@ struct OneCase<S: ContactSolver> {
     with_tangents: bool,
 }
 
-impl<S: ContactSolver> OneCase<S> {
-    fn outputs(&self, state: &ContactState<S::State>) -> Vec<f64> {
+impl OneCase {
+    fn outputs(&self, state: &ContactState) -> Vec<f64> {
         let mut outputs = if self.with_pressures { self.shape.outputs(state).as_slice().to_vec() } else { Vec::new() };
         let bodies = state.bodies.as_deref().unwrap_or_default();
         outputs.extend(self.field.iter().map(|field| field.value_of(bodies)));
@@ -47,11 +46,11 @@ impl<S: ContactSolver> OneCase<S> {
     }
 }
 
-impl<S: ContactSolver> LoadCases<S> {
+impl LoadCases {
     /// The map of some cases with the outputs of a cost; `fields` says of each whether its limits depend on the
     /// displacements, and whether some of these have kinks.
-    pub(crate) fn new(cases: Vec<LoadCase<S>>, cost: &CasesCost, fields: &[[bool; 2]]) -> Self {
-        let one = |(index, LoadCase { name, shape, .. }): (usize, LoadCase<S>)| {
+    pub(crate) fn new(cases: Vec<LoadCase>, cost: &CasesCost, fields: &[[bool; 2]]) -> Self {
+        let one = |(index, LoadCase { name, shape, .. }): (usize, LoadCase)| {
             let (pressures, [in_limits, with_tangents]) = (cost.pressures(index), fields[index]);
             let field = match cost.case(index) {
                 CaseCost::Field(field) => Some(field.clone()),
@@ -72,7 +71,7 @@ impl<S: ContactSolver> LoadCases<S> {
     }
 
     /// The map of one case alone.
-    pub fn case(&self, index: usize) -> &ContactShape<S> {
+    pub fn case(&self, index: usize) -> &ContactShape {
         &self.cases[index].shape
     }
 
@@ -112,7 +111,7 @@ impl<S: ContactSolver> LoadCases<S> {
     pub(crate) fn gradient(
         &self,
         index: usize,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
         dual: &CostGradient,
     ) -> Result<Vector, OracleError> {
         let case = &self.cases[index];
@@ -121,13 +120,7 @@ impl<S: ContactSolver> LoadCases<S> {
     }
 
     /// The dual and the explicit derivative of Σ weights·outputs of a case.
-    fn case_dual(
-        &self,
-        index: usize,
-        control: &Vector,
-        states: &CaseStates<S::State>,
-        weights: &[f64],
-    ) -> CostGradient {
+    fn case_dual(&self, index: usize, control: &Vector, states: &CaseStates, weights: &[f64]) -> CostGradient {
         let (case, state) = (&self.cases[index], &states[index]);
         let mut sum =
             CostGradient { control: Vector::zeros(control.len()), state: Vector::zeros(self.dual_count(index)) };
@@ -151,7 +144,7 @@ impl<S: ContactSolver> LoadCases<S> {
         &self,
         index: usize,
         control: &Vector,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
         accuracy: Accuracy,
     ) -> Result<Linearization, OracleError> {
         let (case, state) = (&self.cases[index], &states[index]);
@@ -191,7 +184,7 @@ impl<S: ContactSolver> LoadCases<S> {
     pub(crate) fn position_sensitivity(
         &self,
         control: &Vector,
-        states: &CaseStates<S::State>,
+        states: &CaseStates,
         weights: &Vector,
     ) -> Result<Vec<[f64; 3]>, OracleError> {
         let problem = self.cases[0].shape.problem();
@@ -231,8 +224,8 @@ impl<S: ContactSolver> LoadCases<S> {
     }
 }
 
-impl<S: ContactSolver> StateSolver for LoadCases<S> {
-    type State = CaseStates<S::State>;
+impl StateSolver for LoadCases {
+    type State = CaseStates;
     type WarmStart = Vec<ContactWarmStart>;
 
     fn control_dimension(&self) -> usize {
@@ -268,7 +261,7 @@ impl<S: ContactSolver> StateSolver for LoadCases<S> {
     }
 }
 
-impl<S: ContactSolver> Coderivative for LoadCases<S> {
+impl Coderivative for LoadCases {
     /// The sum over the cases; nothing is solved for a case whose dual is zero.
     fn coderivative(
         &self,
@@ -295,7 +288,7 @@ impl<S: ContactSolver> Coderivative for LoadCases<S> {
     }
 }
 
-impl<S: ContactSolver> OutputJacobian for LoadCases<S> {
+impl OutputJacobian for LoadCases {
     fn outputs(&self, states: &Self::State) -> Vector {
         let mut outputs: Vec<f64> = (0..self.cases.len()).flat_map(|index| states.outputs(index)).copied().collect();
         if self.with_volume {

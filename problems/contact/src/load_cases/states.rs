@@ -1,24 +1,25 @@
 //! The states of all cases at one shape.
 
-use crate::equilibrium::{ContactState, Tangents};
+use crate::contact_shape::ContactState;
+use crate::equilibrium::Tangents;
 use nonsmooth::Vector;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
 /// The states of all cases at one shape, in the order of the cases.
 #[derive(Debug)]
-pub struct CaseStates<S> {
+pub struct CaseStates {
     /// The controls of the shape.
     pub control: Vector,
-    states: Vec<ContactState<S>>,
+    states: Vec<ContactState>,
     /// The outputs of every case.
     outputs: Vec<Vec<f64>>,
     /// Forward derivatives with those of the displacements, where a Jacobian has been asked for and a limit needs them.
     tangents: Vec<OnceLock<Tangents>>,
 }
 
-impl<S> CaseStates<S> {
-    pub(super) fn new(control: Vector, states: Vec<(ContactState<S>, Vec<f64>)>) -> Self {
+impl CaseStates {
+    pub(super) fn new(control: Vector, states: Vec<(ContactState, Vec<f64>)>) -> Self {
         let tangents = states.iter().map(|_| OnceLock::new()).collect();
         let (states, outputs) = states.into_iter().unzip();
         Self { control, states, outputs, tangents }
@@ -30,7 +31,7 @@ impl<S> CaseStates<S> {
     }
 
     /// The states alone, in the order of the cases.
-    pub fn into_states(self) -> Vec<ContactState<S>> {
+    pub fn into_states(self) -> Vec<ContactState> {
         self.states
     }
 
@@ -46,10 +47,10 @@ impl<S> CaseStates<S> {
     }
 }
 
-impl<S> Deref for CaseStates<S> {
-    type Target = [ContactState<S>];
+impl Deref for CaseStates {
+    type Target = [ContactState];
 
-    fn deref(&self) -> &[ContactState<S>] {
+    fn deref(&self) -> &[ContactState] {
         &self.states
     }
 }

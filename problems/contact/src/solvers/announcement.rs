@@ -1,8 +1,9 @@
 //! What the first process announces to the others: the next task that all of them do together.
 
 use crate::communication::Communication;
-use crate::equilibrium::{ContactWarmStart, TangentsOf};
+use crate::equilibrium::ContactWarmStart;
 use crate::solvers::SolverPlan;
+use crate::solvers::call::Call;
 use serde::{Deserialize, Serialize};
 
 /// Name of a solver or of a state, the same in all processes.
@@ -17,16 +18,8 @@ pub enum Task {
     Prepare(Id, Box<SolverPlan>),
     /// Solve a shape; its state has the second name from now on.
     Solve(Id, Id, Box<Shape>),
-    /// Sensitivities of a state for a dual, to a tolerance.
-    Sensitivities(Id, Id, Vec<f64>, f64),
-    /// Tangents of a state for changes of the controls, to a tolerance.
-    Tangents(Id, Id, Vec<Vec<f64>>, TangentsOf, f64),
-    /// Contraction and condition at a state.
-    Diagnose(Id, Id),
-    /// Estimate of the contraction at a state, for at most so many products.
-    Contraction(Id, Id, usize),
-    /// All bodies of a state.
-    Bodies(Id, Id),
+    /// Ask a solver about a state of its own.
+    Ask(Id, Id, Call),
     /// What a shape similar to that of a state can be solved from.
     WarmStart(Id),
     /// Tell what this process has sent and used.
@@ -92,6 +85,7 @@ impl Announcement {
 mod tests {
     use super::*;
     use crate::communication::Parcel;
+    use crate::equilibrium::TangentsOf;
     use crate::scene::{Scene, hertz, signorini};
     use crate::solvers::{SolverKind, Wanted};
     use crate::tfeti::PreconditionerKind;
@@ -142,7 +136,8 @@ mod tests {
             Task::Prepare(7, plan(signorini().expect("a preset"))),
             Task::Prepare(u64::MAX, plan(hertz().expect("a preset"))),
             Task::Solve(7, 8, Box::new(shape((0..1000).map(|i| (f64::from(i)).sqrt()).collect()))),
-            Task::Tangents(7, 8, vec![vec![], vec![0.1; 5]], TangentsOf::Displacements, 1e-9),
+            Task::Ask(7, 8, Call::Tangents(vec![vec![], vec![0.1; 5]], TangentsOf::Displacements, 1e-9)),
+            Task::Ask(7, 8, Call::Contraction(12)),
             Task::End,
         ];
         for task in tasks {

@@ -1,8 +1,6 @@
 //! Every process but the first: it does what the first announces, until the run ends.
 
 use crate::communication::Communication;
-use crate::equilibrium::{ContactSolver, SolverState};
-use crate::error::ContactError;
 use crate::solvers::announcement::{Announcement, Id, Shape, Task};
 use crate::solvers::leader::{prepared, use_threads};
 use crate::solvers::own_solver::OwnSolver;
@@ -58,17 +56,11 @@ impl Follower {
                 self.agree(state.as_ref().err());
                 self.states.extend(state.ok().map(|state| (id, state.solution)));
             }
-            Task::Sensitivities(solver, state, direction, tolerance) => {
-                self.derives(solver, state, |solver, state| solver.sensitivities(state, &direction, tolerance))?;
+            Task::Ask(solver, state, call) => {
+                // What comes of it is the matter of the first process.
+                let reply = self.solver(solver)?.perform(self.state(state)?, &call);
+                self.agree(reply.err().as_ref());
             }
-            Task::Tangents(solver, state, changes, of, tolerance) => {
-                self.derives(solver, state, |solver, state| solver.tangents(state, &changes, of, tolerance))?;
-            }
-            Task::Diagnose(solver, state) => self.derives(solver, state, OwnSolver::diagnose)?,
-            Task::Contraction(solver, state, products) => {
-                self.derives(solver, state, |solver, state| solver.estimate_contraction(state, products))?;
-            }
-            Task::Bodies(solver, state) => self.derives(solver, state, OwnSolver::bodies)?,
             Task::WarmStart(state) => {
                 let _ = self.state(state)?.warm_start();
             }
@@ -77,18 +69,6 @@ impl Follower {
             }
             Task::End => {}
         }
-        Ok(())
-    }
-
-    /// Takes part in something that is computed from a state; what comes of it is the matter of the first process.
-    fn derives<T>(
-        &self,
-        solver: Id,
-        state: Id,
-        compute: impl FnOnce(&OwnSolver, &OwnState) -> Result<T, ContactError>,
-    ) -> Result<(), String> {
-        let result = compute(self.solver(solver)?, self.state(state)?);
-        self.agree(result.err().as_ref());
         Ok(())
     }
 

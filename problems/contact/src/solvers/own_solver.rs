@@ -9,11 +9,12 @@
 
 use crate::direct::{CondensedShelf, DirectSolver, DirectState};
 use crate::equilibrium::{
-    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
-    Sensitivities, SolvedBody, Tangents, TangentsOf,
+    Configuration, ContactProblem, ContactState, ContactWarmStart, Failed, MAX_RESIDUAL, Sensitivities, Tangents,
+    TangentsOf,
 };
 use crate::error::ContactError;
 use crate::memory;
+use crate::solvers::call::{Call, Reply};
 use crate::solvers::own_state::OwnState;
 use crate::solvers::{SolverKind, Wanted};
 use crate::tfeti::{DualMethod, TornOptions, TornState, TotalFeti};
@@ -233,7 +234,7 @@ impl OwnSolver {
             Err(error) => error,
         };
         let (direct, condensed) = self.condensed(state)?;
-        let found = direct.sensitivities(&condensed, direction, 0.0)?;
+        let found = direct.sensitivities(&condensed, direction)?;
         let applications = if let ContactError::NotConverged { iterations, .. } = failed { iterations } else { 0 };
         Ok(Sensitivities { applications, ..found })
     }
@@ -249,35 +250,34 @@ impl OwnSolver {
         match self.torn()?.tangents(state, changes, of, tolerance) {
             Err(error) if !matches!(self.order, Order::Torn(_)) && !error.ends_the_search() => {
                 let (direct, condensed) = self.condensed(state)?;
-                direct.tangents(&condensed, changes, of, tolerance)
+                direct.tangents(&condensed, changes, of)
             }
             result => result,
         }
     }
 }
 
-impl ContactSolver for OwnSolver {
-    type State = OwnState;
-
-    fn problem(&self) -> &ContactProblem {
+impl OwnSolver {
+    pub fn problem(&self) -> &ContactProblem {
         &self.problem
     }
 
     /// The sizes of a solver that is prepared, total FETI first.
-    fn sizes(&self) -> [usize; 2] {
-        let direct = || self.direct.get().map_or([0; 2], ContactSolver::sizes);
-        self.torn.get().map_or_else(direct, ContactSolver::sizes)
+    pub fn sizes(&self) -> [usize; 2] {
+        let direct = || self.direct.get().map_or([0; 2], DirectSolver::sizes);
+        self.torn.get().map_or_else(direct, TotalFeti::sizes)
     }
 
     /// What the solver that comes first leaves out.
-    fn left_out(&self) -> Option<&'static str> {
+    pub fn left_out(&self) -> Option<&'static str> {
         match self.order {
-            Order::Direct | Order::DirectFirst(..) => self.direct.get()?.left_out(),
+            Order::Direct | Order::DirectFirst(..) => self.direct.get().map(DirectSolver::left_out),
             Order::Torn(_) | Order::TornFirst(_) => self.torn.get()?.left_out(),
         }
     }
 
-    fn solve(
+    /// As [`Solver::solve`](crate::solvers::Solver::solve).
+    pub fn solve(
         &self,
         controls: &[f64],
         start: Option<&ContactWarmStart>,
@@ -297,57 +297,41 @@ impl ContactSolver for OwnSolver {
         }
     }
 
-    fn sensitivities(
-        &self,
-        state: &OwnState,
-        direction: &[f64],
-        tolerance: f64,
-    ) -> Result<Sensitivities, ContactError> {
+    /// Answers a question about a state. Where there are several processes, all of them are asked.
+    pub fn perform(&self, state: &OwnState, call: &Call) -> Result<Reply, ContactError> {
         match state {
-            OwnState::Torn(state) => self.torn_sensitivities(state, direction, tolerance),
-            OwnState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
+            OwnState::Torn(state) => self.torn_reply(state, call),
+            OwnState::Direct(state) => self.direct_reply(state, call),
         }
     }
 
-    fn tangents(
-        &self,
-        state: &OwnState,
-        changes: &[Vec<f64>],
-        of: TangentsOf,
-        tolerance: f64,
-    ) -> Result<Tangents, ContactError> {
-        match state {
-            OwnState::Torn(state) => self.torn_tangents(state, changes, of, tolerance),
-            OwnState::Direct(state) => self.direct()?.tangents(state, changes, of, tolerance),
-        }
+    fn torn_reply(&self, state: &TornState, call: &Call) -> Result<Reply, ContactError> {
+        let torn = self.torn()?;
+        Ok(match call {
+            Call::Sensitivities(dual, tolerance) => {
+                Reply::Sensitivities(self.torn_sensitivities(state, dual, *tolerance)?)
+            }
+            Call::Tangents(changes, of, tolerance) => {
+                Reply::Tangents(self.torn_tangents(state, changes, *of, *tolerance)?)
+            }
+            Call::Diagnose => Reply::Diagnose(torn.diagnose(state)?),
+            Call::Contraction(products) => Reply::Contraction(torn.estimate_contraction(state, *products)?),
+            // The residuals of total FETI know of its rounding.
+            Call::ForceRounding => Reply::ForceRounding(0.0),
+            Call::Bodies => Reply::Bodies(torn.bodies(state)?),
+        })
     }
 
-    fn diagnose(&self, state: &OwnState) -> Result<Diagnosis, ContactError> {
-        match state {
-            OwnState::Torn(state) => self.torn()?.diagnose(state),
-            OwnState::Direct(state) => self.direct()?.diagnose(state),
-        }
-    }
-
-    fn estimate_contraction(&self, state: &OwnState, max_products: usize) -> Result<f64, ContactError> {
-        match state {
-            OwnState::Torn(state) => self.torn()?.estimate_contraction(state, max_products),
-            OwnState::Direct(state) => self.direct()?.estimate_contraction(state, max_products),
-        }
-    }
-
-    fn force_rounding(&self, state: &OwnState) -> Result<f64, ContactError> {
-        match state {
-            OwnState::Torn(state) => self.torn()?.force_rounding(state),
-            OwnState::Direct(state) => self.direct()?.force_rounding(state),
-        }
-    }
-
-    fn bodies(&self, state: &OwnState) -> Result<Vec<SolvedBody>, ContactError> {
-        match state {
-            OwnState::Torn(state) => self.torn()?.bodies(state),
-            OwnState::Direct(state) => self.direct()?.bodies(state),
-        }
+    fn direct_reply(&self, state: &DirectState, call: &Call) -> Result<Reply, ContactError> {
+        let direct = self.direct()?;
+        Ok(match call {
+            Call::Sensitivities(dual, _) => Reply::Sensitivities(direct.sensitivities(state, dual)?),
+            Call::Tangents(changes, of, _) => Reply::Tangents(direct.tangents(state, changes, *of)?),
+            Call::Diagnose => Reply::Diagnose(direct.diagnose(state)?),
+            Call::Contraction(_) => Reply::Contraction(direct.estimate_contraction(state)?),
+            Call::ForceRounding => Reply::ForceRounding(direct.force_rounding(state)?),
+            Call::Bodies => Reply::Bodies(direct.bodies(state)?),
+        })
     }
 }
 

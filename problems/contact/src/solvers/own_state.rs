@@ -1,7 +1,7 @@
 //! What the solver of one process keeps of a solved shape.
 
 use crate::direct::DirectState;
-use crate::equilibrium::{ContactWarmStart, SolverState};
+use crate::equilibrium::ContactWarmStart;
 use crate::tfeti::TornState;
 
 /// What the solver of one process keeps of a solved shape.
@@ -11,8 +11,9 @@ pub enum OwnState {
     Direct(Box<DirectState>),
 }
 
-impl SolverState for OwnState {
-    fn warm_start(&self) -> ContactWarmStart {
+impl OwnState {
+    /// What a similar shape can be solved from.
+    pub fn warm_start(&self) -> ContactWarmStart {
         match self {
             Self::Torn(state) => state.warm_start(),
             Self::Direct(state) => state.warm_start(),

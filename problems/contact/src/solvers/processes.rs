@@ -5,7 +5,7 @@ use crate::error::{ContactError, SceneError};
 use crate::solvers::announcement::Task;
 use crate::solvers::leader::{Leader, prepared, use_threads};
 use crate::solvers::shared_factors::SharedFactors;
-use crate::solvers::{AnySolver, SolverKind, SolverPlan, Usage};
+use crate::solvers::{Solver, SolverKind, SolverPlan, Usage};
 use std::sync::Arc;
 
 pub use crate::solvers::follower::follow;
@@ -39,12 +39,12 @@ impl Processes {
     /// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do
     /// not make, or a size whose symbolic analysis fails; [`SceneError::OtherProcess`] if the preparation fails in
     /// another process only.
-    pub fn solver(&self, plan: SolverPlan) -> Result<AnySolver, SceneError> {
+    pub fn solver(&self, plan: SolverPlan) -> Result<Solver, SceneError> {
         Ok(match &self.leader {
-            None => AnySolver::from(prepared(plan, Arc::new(InProcess), &self.factors)?),
+            None => Solver::from(prepared(plan, Arc::new(InProcess), &self.factors)?),
             Some(leader) => {
                 let (own, id) = leader.prepare(plan, &self.factors)?;
-                AnySolver::led(own, id, Arc::clone(leader))
+                Solver::led(own, id, Arc::clone(leader))
             }
         })
     }

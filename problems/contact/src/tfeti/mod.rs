@@ -13,11 +13,11 @@
 //! ```
 //! method.md (4.1), (4.2). Each folder uses only those above it.
 
-mod contact_solver;
 mod derivative;
 mod dual;
 mod newton;
 mod paper;
+mod questions;
 mod solver;
 mod state;
 mod torn;

@@ -1,6 +1,6 @@
 //! A shape solved by total FETI, with all that its derivative needs.
 
-use crate::equilibrium::{ContactRows, ContactWarmStart, SolverState};
+use crate::equilibrium::{ContactRows, ContactWarmStart};
 use crate::shape::Positions;
 use crate::tfeti::derivative::SolvedShape;
 use crate::tfeti::dual::{CoarseSpace, TornSolution};
@@ -37,11 +37,10 @@ impl TornState {
     pub fn displacement(&self) -> &[f64] {
         &self.displacement.0
     }
-}
 
-impl SolverState for TornState {
-    /// λ over all rows. Where there are several processes, all of them call it.
-    fn warm_start(&self) -> ContactWarmStart {
+    /// λ over all rows, from which a similar shape can be solved. Where there are several processes, all of them call
+    /// it.
+    pub fn warm_start(&self) -> ContactWarmStart {
         ContactWarmStart::Multipliers(
             self.constraints.whole(&self.solution.iterate.multipliers, &self.space.distribution),
         )

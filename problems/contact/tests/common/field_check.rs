@@ -5,7 +5,7 @@
 
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure, FieldPiece};
-use contact::equilibrium::{ContactSolver, TangentsOf};
+use contact::equilibrium::TangentsOf;
 use contact::scene::Scene;
 use nonsmooth::{Accuracy, Coderivative, Cost, StateSolver, Vector};
 

@@ -1,7 +1,7 @@
 //! The error that a state reports bounds the true error of Θ, over measures, random scenes, solvers and tolerances.
 
 use contact::contact_objective::ContactObjective;
-use contact::contact_shape::{AnySolver, ContactShape};
+use contact::contact_shape::{ContactShape, Solver};
 use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ValueError};
@@ -12,9 +12,9 @@ use proptest::prelude::*;
 use std::sync::Arc;
 
 /// A solver of total FETI, or direct condensation.
-type Solver = Option<(PreconditionerKind, DualMethod)>;
+type Way = Option<(PreconditionerKind, DualMethod)>;
 
-const DIRICHLET: Solver = Some((PreconditionerKind::Dirichlet, DualMethod::Newton(Recycling::On)));
+const DIRICHLET: Way = Some((PreconditionerKind::Dirichlet, DualMethod::Newton(Recycling::On)));
 
 /// Rounding of the reference, relative to it. Displacements of whole bodies cost a digit more than forces.
 fn rounding(measure: &Measure) -> f64 {
@@ -24,14 +24,14 @@ fn rounding(measure: &Measure) -> f64 {
     }
 }
 
-fn objective(scene: &Scene, solver: Solver, measure: &Measure) -> ContactObjective {
+fn objective(scene: &Scene, way: Way, measure: &Measure) -> ContactObjective {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
-    let solver = match solver {
+    let solver = match way {
         Some((preconditioner, method)) => {
             let options = TornOptions { preconditioner, ..TornOptions::default() };
-            AnySolver::from(TotalFeti::new(problem, options).unwrap().with_method(method))
+            Solver::from(TotalFeti::new(problem, options).unwrap().with_method(method))
         }
-        None => AnySolver::from(DirectSolver::new(problem).unwrap()),
+        None => Solver::from(DirectSolver::new(problem).unwrap()),
     };
     ContactObjective::new(ContactShape::by(solver), measure.clone(), &[]).unwrap()
 }
@@ -49,7 +49,7 @@ fn check(
     scene: &Scene,
     control: &Vector,
     measure: &Measure,
-    solvers: &[Solver],
+    solvers: &[Way],
     tolerances: &[f64],
 ) -> Result<(), TestCaseError> {
     let exact = value(&objective(scene, None, measure), control, Accuracy::TIGHTEST).0;

@@ -4,7 +4,7 @@ use crate::common::start_height;
 use crate::field_check::{check, conclude};
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure, Region};
-use contact::equilibrium::{ContactSolver, TangentsOf};
+use contact::equilibrium::TangentsOf;
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};

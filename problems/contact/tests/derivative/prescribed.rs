@@ -4,7 +4,7 @@ use crate::common::{start_height, unit};
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure, NodeWeight, PressureCost, PressureMeasure, Region};
-use contact::equilibrium::{ContactSolver, TangentsOf};
+use contact::equilibrium::TangentsOf;
 use contact::scene::{Held, NormalKind, Scene, Support, hertz, signorini};
 use nonsmooth::verify::{Direction, seeded_direction, taylor_test};
 use nonsmooth::{Accuracy, CompositeObjective, NonsmoothObjective, ReducedObjective, StateSolver, Vector};

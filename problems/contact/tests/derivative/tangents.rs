@@ -4,7 +4,7 @@ use crate::common::unit;
 
 use contact::body::elasticity::Material;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{ContactSolver, Tangents, TangentsOf};
+use contact::equilibrium::{Tangents, TangentsOf};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};

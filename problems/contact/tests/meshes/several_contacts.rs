@@ -5,7 +5,6 @@
 use crate::grid::{KINDS, Point, curved, mesh};
 use crate::setting::{extent, held, lattice, material, pushed};
 use contact::body::mesh::Mesh;
-use contact::equilibrium::ContactSolver;
 use contact::error::ContactError;
 use contact::scene::{
     BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, LoadKind, Master, MeshGeometry, Scene, Side,

@@ -2,7 +2,7 @@
 
 use crate::rank::Rank;
 use crate::stack::tower;
-use contact::equilibrium::{ContactProblem, ContactSolver, TangentsOf};
+use contact::equilibrium::{ContactProblem, TangentsOf};
 use contact::tfeti::{TornOptions, TotalFeti};
 use std::sync::Arc;
 

@@ -1,8 +1,7 @@
 //! Hybrid total FETI: clusters with six rigid motions each find the states and derivatives of single subdomains.
 
 use crate::common::{start_height, unit};
-use contact::contact_shape::ContactState;
-use contact::equilibrium::{ContactProblem, ContactSolver, TangentsOf};
+use contact::equilibrium::{ContactProblem, TangentsOf};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{Scene, hertz, signorini};
@@ -30,7 +29,7 @@ fn results(scene: &Scene, clusters: Option<usize>, method: DualMethod) -> Vec<(&
     let solver = solver(scene, clusters, method);
     let problem = solver.problem();
     let state = solver.solve(&wavy(start_height(scene), 36), None, 1e-11).unwrap();
-    let ContactState { forces, solution, .. } = state;
+    let (forces, solution) = (state.forces, state.solution);
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.3 * row as f64).sin()).collect();
     let changes: Vec<Vec<f64>> = [0, 17, 35].map(|control| unit(36, control)).into();
     let bodies = solver.bodies(&solution).unwrap();

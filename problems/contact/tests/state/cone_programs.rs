@@ -4,7 +4,7 @@ use crate::common::{change_counter_surface, start_height};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::direct::{DirectSolver, by_cone_programs};
-use contact::equilibrium::{ContactProblem, ContactRows, ContactSolver};
+use contact::equilibrium::{ContactProblem, ContactRows};
 use contact::scene::{CounterSurface, Load, Scene, hertz, signorini};
 use contact::shape::ShapeBounds;
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use contact::body::elasticity::stress::{COMPONENTS, stress_at};
 use contact::body::elasticity::{CellNodes, Formulation, hex8};
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
-use contact::equilibrium::{ContactSolver, ContactStatus, TangentsOf};
+use contact::equilibrium::{ContactStatus, TangentsOf};
 use contact::error::ContactError;
 use contact::fields::{BodyFields, Fields};
 use contact::scene::{Scene, hertz, signorini};

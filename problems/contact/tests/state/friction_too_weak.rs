@@ -5,7 +5,7 @@ use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::direct::{DirectSolver, resistance};
-use contact::equilibrium::{ContactProblem, ContactSolver};
+use contact::equilibrium::ContactProblem;
 use contact::error::ContactError;
 use contact::scene::{CounterSurface, Load, Scene, Support, signorini};
 use nonsmooth::{Accuracy, OracleError, StateSolver, Vector};

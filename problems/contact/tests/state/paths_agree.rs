@@ -3,7 +3,7 @@
 use crate::common::{bent, change_counter_surface};
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
-use contact::equilibrium::{ContactProblem, ContactSolver};
+use contact::equilibrium::ContactProblem;
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
 use contact::solvers::{Processes, SolverPlan};
 use contact::tfeti::{Precision, PreconditionerKind, TornOptions, TotalFeti};

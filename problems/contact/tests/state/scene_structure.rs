@@ -4,7 +4,7 @@ use crate::common::{change_counter_surface, set_top};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{Configuration, ContactProblem, ContactSolver, ContactStatus};
+use contact::equilibrium::{Configuration, ContactProblem, ContactStatus};
 use contact::error::{ContactError, SceneError};
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};

@@ -4,7 +4,7 @@
 use crate::common::{start_height, unit};
 use crate::rank::Rank;
 use contact::communication::Communication;
-use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState, TangentsOf};
+use contact::equilibrium::{ContactProblem, SolvedBody, TangentsOf};
 use contact::error::ContactError;
 use contact::scene::{Held, Scene, Support, hertz, signorini};
 use contact::tfeti::{DualMethod, Recycling, TornOptions, TotalFeti};

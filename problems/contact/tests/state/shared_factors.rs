@@ -3,7 +3,7 @@
 use crate::rank::Rank;
 use contact::communication::Communication;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
-use contact::equilibrium::{ContactProblem, ContactSolver};
+use contact::equilibrium::ContactProblem;
 use contact::scene::{Held, Scene, Support, hertz};
 use contact::solvers::{Processes, SolverPlan};
 use contact::tfeti::{TornOptions, TotalFeti};

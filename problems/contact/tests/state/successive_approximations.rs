@@ -3,9 +3,7 @@
 use crate::common::start_height;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::SolverKind;
-use contact::equilibrium::{
-    ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, SolverState, Work,
-};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactState, ContactWarmStart, Work};
 use contact::error::ContactError;
 use contact::qp::QpError;
 use contact::scene::{Scene, hertz, signorini};

@@ -7,7 +7,6 @@
 
 use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
-use contact::contact_shape::AnyState;
 use contact::equilibrium::ContactStatus;
 use contact::load_cases::CaseStates;
 use nonsmooth::verify::seeded_direction;
@@ -63,7 +62,7 @@ impl Line<'_> {
         &self.start + &self.direction * t
     }
 
-    fn state(&self, t: f64) -> Result<CaseStates<AnyState>, Failure> {
+    fn state(&self, t: f64) -> Result<CaseStates, Failure> {
         Ok(self.objective.cases().solve(&self.at(t), None, Accuracy::TIGHTEST)?)
     }
 

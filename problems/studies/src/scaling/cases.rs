@@ -1,7 +1,7 @@
 //! Which meshes are measured, with which solvers.
 
 use clap::ValueEnum;
-use contact::contact_shape::AnySolver;
+use contact::contact_shape::Solver;
 use contact::direct::DirectSolver;
 use contact::equilibrium::ContactProblem;
 use contact::error::{ContactError, SceneError};
@@ -152,7 +152,7 @@ impl Variant {
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<AnySolver, ContactError> {
+    pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<Solver, ContactError> {
         self.clustered_solver(problem, 1)
     }
 
@@ -160,10 +160,10 @@ impl Variant {
     ///
     /// # Errors
     /// As [`Variant::solver`], and [`ContactError::Clusters`].
-    pub fn clustered_solver(self, problem: &Arc<ContactProblem>, clusters: usize) -> Result<AnySolver, ContactError> {
+    pub fn clustered_solver(self, problem: &Arc<ContactProblem>, clusters: usize) -> Result<Solver, ContactError> {
         let problem = Arc::clone(problem);
         let Some(preconditioner) = self.preconditioner() else {
-            return DirectSolver::new(problem).map(AnySolver::from);
+            return DirectSolver::new(problem).map(Solver::from);
         };
         let method = match self {
             Self::AugmentedLagrangian => DualMethod::SuccessiveApproximations,
@@ -172,7 +172,7 @@ impl Variant {
         };
         let clusters = (clusters > 1).then(|| cluster_count(&problem, clusters));
         let options = TornOptions { preconditioner, clusters, ..TornOptions::default() };
-        Ok(AnySolver::from(TotalFeti::new(problem, options)?.with_method(method)))
+        Ok(Solver::from(TotalFeti::new(problem, options)?.with_method(method)))
     }
 
     /// The preconditioner; none for direct condensation.

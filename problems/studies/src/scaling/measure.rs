@@ -3,8 +3,8 @@
 use crate::scaling::cases::{Case, SceneName, Variant, cluster_count};
 use crate::scaling::memory;
 use crate::scaling::rows::{Adjoint, Sample, ScalingRow, Solve, Start};
-use contact::contact_shape::{AnySolver, ContactState, ContactWarmStart};
-use contact::equilibrium::{ContactProblem, ContactSolver, SolverState};
+use contact::contact_shape::{ContactState, ContactWarmStart, Solver};
+use contact::equilibrium::ContactProblem;
 use contact::error::ContactError;
 use nonsmooth::verify::seeded_direction;
 use problems::commands::Failure;
@@ -99,7 +99,7 @@ fn median(mut run: impl FnMut() -> Result<Sample, ContactError>) -> Result<Sampl
 
 /// A state to [`TIMED`] and its subgradient.
 fn sample(
-    solver: &AnySolver,
+    solver: &Solver,
     controls: &[f64],
     start: Option<&ContactWarmStart>,
 ) -> Result<(Sample, ContactState), ContactError> {
@@ -109,7 +109,7 @@ fn sample(
 }
 
 /// States to the other tolerances: cold at the first controls, warm at the second from that cold state.
-fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut Vec<String>) -> Vec<Solve> {
+fn counted(solver: &Solver, [controls, nearby]: [&[f64]; 2], failures: &mut Vec<String>) -> Vec<Solve> {
     let mut solves = Vec::new();
     let mut record = |controls: &[f64], restart: Option<&ContactWarmStart>, tolerance: f64| {
         let start = if restart.is_some() { Start::Warm } else { Start::Cold };
@@ -130,7 +130,7 @@ fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut V
 
 /// Solves a state and measures its time.
 fn solve(
-    solver: &AnySolver,
+    solver: &Solver,
     controls: &[f64],
     start: Option<&ContactWarmStart>,
     tolerance: f64,
@@ -150,7 +150,7 @@ fn solve(
 }
 
 /// Sensitivities of the column heights of Σσ⁴, timed.
-fn adjoint(solver: &AnySolver, state: &ContactState, tolerance: f64) -> Result<Adjoint, ContactError> {
+fn adjoint(solver: &Solver, state: &ContactState, tolerance: f64) -> Result<Adjoint, ContactError> {
     let boundary = &solver.problem().boundary;
     let mut dual = vec![0.0; boundary.row_count];
     for (point, (pressure, area)) in boundary.points.iter().zip(pressures(state)) {

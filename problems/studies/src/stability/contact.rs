@@ -1,8 +1,9 @@
 //! A contact case: a scene, its controls, what is expected, and the paths that solve it.
 
 use crate::stability::record::Path;
+use contact::contact_shape::{ContactState, Solver};
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, ContactState, Diagnosis};
+use contact::equilibrium::{ContactForces, ContactProblem, Diagnosis};
 use contact::error::{ContactError, SceneError};
 use contact::scene::Scene;
 use contact::tfeti::{DualMethod, TornOptions, TotalFeti};
@@ -111,12 +112,12 @@ pub struct Found {
 pub type Attempt = (Path, Option<Found>);
 
 /// A state by a solver, and what is asked of it besides.
-fn attempt<S: ContactSolver>(
+fn attempt(
     name: &'static str,
-    solver: Result<S, ContactError>,
+    solver: Result<Solver, ContactError>,
     controls: &[f64],
     tolerance: f64,
-    examine: impl FnOnce(&S, ContactState<S::State>, &mut Path) -> Found,
+    examine: impl FnOnce(&Solver, ContactState, &mut Path) -> Found,
 ) -> Attempt {
     match solver.and_then(|solver| Ok((solver.solve(controls, None, tolerance)?, solver))) {
         Ok((state, solver)) => {
@@ -141,7 +142,7 @@ fn attempt<S: ContactSolver>(
 }
 
 /// Sensitivities of the control heights for a dual that is nothing special.
-fn heights<S: ContactSolver>(solver: &S, state: &ContactState<S::State>) -> Result<Vec<f64>, String> {
+fn heights(solver: &Solver, state: &ContactState) -> Result<Vec<f64>, String> {
     let problem = solver.problem();
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
     let sensitivities = solver.sensitivities(&state.solution, &dual, ADJOINT_TOLERANCE);
@@ -150,7 +151,7 @@ fn heights<S: ContactSolver>(solver: &S, state: &ContactState<S::State>) -> Resu
 
 /// Solves a state by total FETI and the semismooth Newton method.
 pub fn by_tfeti(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
-    let solver = TotalFeti::new(Arc::clone(problem), TornOptions::default());
+    let solver = TotalFeti::new(Arc::clone(problem), TornOptions::default()).map(Solver::from);
     attempt("tfeti", solver, controls, TOLERANCE, |solver, state, _| {
         let heights = heights(solver, &state);
         Found { forces: state.forces, heights, diagnosis: None }
@@ -159,7 +160,7 @@ pub fn by_tfeti(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
 
 /// Newton on condensed bodies.
 pub fn by_condensation(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
-    let solver = DirectSolver::new(Arc::clone(problem));
+    let solver = DirectSolver::new(Arc::clone(problem)).map(Solver::from);
     attempt("direct", solver, controls, TOLERANCE, |solver, state, _| {
         let heights = heights(solver, &state);
         let diagnosis = Some(solver.diagnose(&state.solution).map_err(|error| error.to_string()));
@@ -170,7 +171,7 @@ pub fn by_condensation(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attem
 /// Successive approximations on TFETI.
 pub fn by_successive_approximations(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
     let solver = TotalFeti::new(Arc::clone(problem), TornOptions::default());
-    let solver = solver.map(|solver| solver.with_method(DualMethod::SuccessiveApproximations));
+    let solver = solver.map(|solver| Solver::from(solver.with_method(DualMethod::SuccessiveApproximations)));
     attempt("successive approximations", solver, controls, PAPER_TOLERANCE, |_, state, path| {
         path.reason = Some(format!("observed contraction {:.3}", state.contraction.unwrap_or(0.0)));
         Found { forces: state.forces, heights: Ok(Vec::new()), diagnosis: None }

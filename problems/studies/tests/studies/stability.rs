@@ -3,7 +3,7 @@
 use contact::body::elasticity::{Formulation, Material};
 use contact::contact_shape::SolverKind;
 use contact::direct::DirectSolver;
-use contact::equilibrium::{Configuration, ContactForces, ContactProblem, ContactSolver};
+use contact::equilibrium::{Configuration, ContactForces, ContactProblem};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Held, Master, Scene, hertz, signorini};

@@ -3,10 +3,10 @@
 use contact::WorkEstimate;
 use contact::contact_shape::ContactState;
 use contact::direct::{CompliantContact, DirectSolver, by_cone_programs};
-use contact::equilibrium::{ContactForces, ContactProblem, ContactRows, ContactSolver};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactRows};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
-use contact::solvers::{AnySolver, Processes, SolverKind, SolverPlan};
+use contact::solvers::{Processes, Solver, SolverKind, SolverPlan};
 use scene_file::Case;
 use std::sync::Arc;
 
@@ -103,7 +103,7 @@ impl Examined {
     }
 
     /// A state with all that a path asks of its solver: sensitivities, and the contraction where it is estimated.
-    fn solved(&self, solver: &AnySolver, controls: &[f64]) -> Result<(ContactState, Option<f64>), ContactError> {
+    fn solved(&self, solver: &Solver, controls: &[f64]) -> Result<(ContactState, Option<f64>), ContactError> {
         let state = solver.solve(controls, None, TOLERANCE)?;
         let friction = self.problem.boundary.has_friction();
         let exponent = f64::from(EXPONENT);

@@ -1,9 +1,8 @@
-//! Total FETI as a contact solver: states, their derivatives, what is known of them.
+//! What is asked of a state of total FETI: derivatives, diagnosis, displacements.
 
 use crate::body::mesh::smallest_extent;
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, Stage,
-    Tangents, TangentsOf,
+    ContactProblem, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, Stage, Tangents, TangentsOf,
 };
 use crate::error::ContactError;
 use crate::linear::vector::dot;
@@ -14,7 +13,7 @@ use crate::tfeti::torn::whole_bodies;
 use crate::work_estimate::MAX_PRODUCTS;
 
 impl TotalFeti {
-    /// As [`ContactSolver::sensitivities`], with at most so many products with F.
+    /// As [`Self::sensitivities`], with at most so many products with F.
     pub(crate) fn sensitivities_within(
         &self,
         state: &TornState,
@@ -56,23 +55,28 @@ impl TotalFeti {
 }
 
 /// Where there are several processes, all of them make each call.
-impl ContactSolver for TotalFeti {
-    type State = TornState;
-
-    fn problem(&self) -> &ContactProblem {
+impl TotalFeti {
+    /// The problem that is solved.
+    pub fn problem(&self) -> &ContactProblem {
         &self.model.problem
     }
 
-    fn sizes(&self) -> [usize; 2] {
+    /// Number of degrees of freedom of all subdomains, and number of multipliers.
+    pub fn sizes(&self) -> [usize; 2] {
         let model = &self.model;
         [model.total_dofs(), model.constraints.total_equality_count + model.problem.boundary.row_count]
     }
 
-    fn left_out(&self) -> Option<&'static str> {
+    /// What this solver did not need for its scene, in words.
+    pub fn left_out(&self) -> Option<&'static str> {
         (self.model.constraints.gluing_count == 0).then_some("gluing (one subdomain per body)")
     }
 
-    fn solve(
+    /// As [`Solver::solve`](crate::solvers::Solver::solve).
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium, no convergence.
+    pub fn solve(
         &self,
         controls: &[f64],
         start: Option<&ContactWarmStart>,
@@ -81,7 +85,11 @@ impl ContactSolver for TotalFeti {
         self.attempt(controls, start, tolerance, None).map_err(|failed| *failed.error)
     }
 
-    fn sensitivities(
+    /// As [`Solver::sensitivities`](crate::solvers::Solver::sensitivities).
+    ///
+    /// # Errors
+    /// [`ContactError`] of the adjoint.
+    pub fn sensitivities(
         &self,
         state: &TornState,
         direction: &[f64],
@@ -90,7 +98,11 @@ impl ContactSolver for TotalFeti {
         self.sensitivities_within(state, direction, tolerance, MAX_PRODUCTS)
     }
 
-    fn tangents(
+    /// As [`Solver::tangents`](crate::solvers::Solver::tangents).
+    ///
+    /// # Errors
+    /// [`ContactError`] of the linearized problems.
+    pub fn tangents(
         &self,
         state: &TornState,
         changes: &[Vec<f64>],
@@ -107,20 +119,32 @@ impl ContactSolver for TotalFeti {
         derivative::tangents(&contact, request, &state.solution.linearizations, changes)
     }
 
-    fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
+    /// As [`Solver::diagnose`](crate::solvers::Solver::diagnose).
+    ///
+    /// # Errors
+    /// [`ContactError`] from the linear systems.
+    pub fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
         match self.contact_of(state)? {
             Some(contact) => derivative::diagnose(&contact, &state.solution.linearizations),
             None => Ok(Diagnosis { contraction: 0.0, condition: None }),
         }
     }
 
-    fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
+    /// As [`Solver::estimate_contraction`](crate::solvers::Solver::estimate_contraction).
+    ///
+    /// # Errors
+    /// [`ContactError`] from the linear system.
+    pub fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
         let Some(contact) = self.contact_of(state)? else { return Ok(0.0) };
         derivative::estimate_contraction(&contact, &state.solution, max_products)
     }
 
-    /// Torn copies of a node are averaged. Of several processes, the first one alone gets the bodies, the others none.
-    fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
+    /// All bodies of a solved shape, in the order of the scene. Torn copies of a node are averaged. Of several
+    /// processes, the first one alone gets the bodies, the others none.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`] for a state of another mesh.
+    pub fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
         self.check(state)?;
         Ok(whole_bodies(&self.model, &state.positions, &state.displacement))
     }
