@@ -209,15 +209,10 @@ impl ContactShape {
     }
 
     /// The derivative of Σ weights·outputs by the positions of the nodes of all bodies at fixed contact forces.
-    pub(crate) fn output_position_gradient(
-        &self,
-        control: &Vector,
-        state: &ContactState,
-        weights: &Vector,
-    ) -> Vec<[f64; 3]> {
+    pub(crate) fn output_position_gradient(&self, state: &ContactState, weights: &Vector) -> Vec<[f64; 3]> {
         let problem = self.problem();
         let [_, by_area] = self.outputs.pull_back(&state.forces.normal, &state.rows.areas(), weights.as_slice());
-        problem.pull_back_areas(&state.rows, &problem.map.positions(control.as_slice()), &by_area)
+        problem.pull_back_areas(&state.rows, &by_area)
     }
 
     /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows
@@ -245,14 +240,10 @@ impl ContactShape {
         self.check_dimension(control)?;
         let (problem, outputs) = (self.problem(), self.outputs(state));
         let (points, areas) = (problem.boundary.contact_points(), state.rows.areas());
-        let changes = unit_changes(control.len());
-        let velocities = problem.map.velocities(&changes);
-        let positions = problem.areas_change().then(|| problem.map.positions(control.as_slice()));
         let mut jacobian = Matrix::zeros(outputs.len(), control.len());
         for (k, mut column) in jacobian.column_iter_mut().enumerate() {
-            let moved = positions.as_ref().map(|x| problem.area_changes(&state.rows, x, &velocities, k));
             let forces = |node: usize| tangents.forces[k][points[node].start];
-            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, moved.as_deref());
+            let changes = self.outputs.push_forward([&state.forces.normal, &areas], forces, &tangents.areas[k]);
             column.copy_from_slice(&changes);
         }
         let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
@@ -326,12 +317,12 @@ impl OutputJacobian for ContactShape {
         Vector::from_vec(self.outputs.values(&state.forces.normal, &state.rows.areas()))
     }
 
-    fn output_dual(&self, control: &Vector, state: &Self::State, weights: &Vector) -> CostGradient {
+    fn output_dual(&self, _control: &Vector, state: &Self::State, weights: &Vector) -> CostGradient {
         let problem = self.problem();
         let [by_force, _] = self.outputs.pull_back(&state.forces.normal, &state.rows.areas(), weights.as_slice());
         let mut dual = Vector::zeros(problem.boundary.row_count);
         problem.boundary.contact_points().iter().zip(by_force).for_each(|(point, weight)| dual[point.start] = weight);
-        let explicit = problem.map.pull_back(&self.output_position_gradient(control, state, weights));
+        let explicit = problem.map.pull_back(&self.output_position_gradient(state, weights));
         CostGradient { control: Vector::from_vec(explicit), state: dual }
     }
 

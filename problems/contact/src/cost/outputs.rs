@@ -106,17 +106,16 @@ impl PressureOutputs {
         [by_force, by_area]
     }
 
-    /// The changes of the outputs for changes of the normal forces and, where they change, of the areas.
+    /// The changes of the outputs for changes of the normal forces and of the areas.
     pub fn push_forward(
         &self,
         [forces, areas]: [&[f64]; 2],
         force_changes: impl Fn(usize) -> f64,
-        area_changes: Option<&[f64]>,
+        area_changes: &[f64],
     ) -> Vec<f64> {
-        let sum = area_changes.map_or(0.0, |changes| changes.iter().sum());
+        let sum = area_changes.iter().sum::<f64>();
         let change = |(node, output): (usize, Output)| {
-            let by_area = area_changes.map_or(0.0, |changes| output.by_area * changes[node]);
-            output.by_force * force_changes(node) + by_area + output.by_sum * sum
+            output.by_force * force_changes(node) + output.by_area * area_changes[node] + output.by_sum * sum
         };
         self.all(forces, areas).map(change).collect()
     }
@@ -152,7 +151,7 @@ mod tests {
                     outputs.values(&moved(&forces, by_force), &moved(&areas, by_area))
                 };
                 let (before, after) = (at(-1.0), at(1.0));
-                let changes = outputs.push_forward([&forces, &areas], |node| by_force[node], Some(by_area));
+                let changes = outputs.push_forward([&forces, &areas], |node| by_force[node], by_area);
                 let mut sum = 0.0;
                 for index in 0..8 {
                     let difference = (after[index] - before[index]) / (2.0 * step);

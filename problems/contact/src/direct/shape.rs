@@ -121,7 +121,8 @@ impl DirectSolver {
         for (number, forces) in forces {
             on_contact[number] += contact.bodies[number].stiff().condensed.condense_loads(forces);
         }
-        ShapeLoads { contact: on_contact, turned, approaches }
+        let areas = changes.iter().map(|changes| contact.rows.area_changes(changes)).collect();
+        ShapeLoads { contact: on_contact, turned, approaches, areas }
     }
 }
 

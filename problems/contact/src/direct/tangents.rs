@@ -26,6 +26,8 @@ pub(super) struct ShapeLoads {
     pub turned: Vec<Mat<f64>>,
     /// ∂B u − ∂g over the packed rows, mm.
     pub approaches: Vec<Vec<f64>>,
+    /// Changes of the areas of the contact nodes, mm².
+    pub areas: Vec<Vec<f64>>,
 }
 
 /// Tangents of the condensed problem.
@@ -71,7 +73,8 @@ pub(super) fn tangents(
     }
     let (solution, residual) = refined(&DenseLu::new(&sprung), &active.matrix, right);
     let (forces, openings) = (Vec::new(), Vec::new());
-    let mut tangents = Tangents { forces, openings, displacements: None, residual, applications: 0 };
+    let areas = loads.areas.clone();
+    let mut tangents = Tangents { forces, openings, areas, displacements: None, residual, applications: 0 };
     let mut amplitudes = Vec::new();
     for (column, (constant, _)) in driven.iter().enumerate() {
         let solution = solution.col_as_slice(column);

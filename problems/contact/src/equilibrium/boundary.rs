@@ -6,81 +6,12 @@
 
 use crate::body::{Body, beyond};
 use crate::equilibrium::contact_part::ContactPart;
+use crate::equilibrium::contact_point::{ContactPoint, Side};
 use crate::error::SceneError;
 use crate::names::nodes_of;
 use crate::scene::{ContactScene, Scene};
 use std::collections::BTreeSet;
 use std::ops::Range;
-
-/// Part of a prescribed jump, relative to the displacements that it is the difference of, that is rounding.
-const ROUNDING: f64 = 1e-13;
-
-/// A node of a body that may be in the rows of a contact node; its weight depends on the shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
-    /// The body.
-    pub body: usize,
-    /// The node of its mesh.
-    pub node: u32,
-    /// The displacement that supports prescribe to it along its held directions, mm.
-    pub prescribed: [f64; 3],
-}
-
-/// A node of a slave face with its rows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContactPoint {
-    /// The contact, by its place in the scene.
-    pub contact: usize,
-    /// The slave body.
-    pub body: usize,
-    /// The node of its mesh.
-    pub node: u32,
-    /// The nodes in its rows, its own first, then those of the master that have weights at some shape.
-    pub sides: Vec<Side>,
-    /// Position of its normal row in a packed contact vector.
-    pub start: usize,
-    /// Number of its tangential rows.
-    pub tangents: usize,
-    /// Whether any tangential direction is free, with or without a row.
-    pub can_slide: bool,
-    /// Friction coefficient 𝓕.
-    pub friction: f64,
-    /// Whether it is glued to the master.
-    pub is_tied: bool,
-    /// Orthonormal directions in which it is free.
-    pub free: Vec<[f64; 3]>,
-}
-
-impl ContactPoint {
-    /// Number of rows of this node.
-    pub fn row_count(&self) -> usize {
-        1 + self.tangents
-    }
-
-    /// Its rows in a packed contact vector.
-    pub fn rows(&self) -> Range<usize> {
-        self.start..self.start + self.row_count()
-    }
-
-    /// Σ weight · prescribed displacement of its nodes, mm, for the weights of a shape: the jump where nothing else
-    /// moves.
-    pub fn prescribed_jump(&self, weights: &[f64]) -> [f64; 3] {
-        let sides = || self.sides.iter().zip(weights);
-        std::array::from_fn(|axis| sides().map(|(side, weight)| weight * side.prescribed[axis]).sum())
-    }
-
-    /// The part of the prescribed jump across the directions in which it is free, which no row has, mm.
-    pub(crate) fn imposed(&self, weights: &[f64]) -> [f64; 3] {
-        let mut jump = self.prescribed_jump(weights);
-        let size = |vector: [f64; 3]| vector.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-        let largest = self.sides.iter().map(|side| size(side.prescribed)).fold(0.0, f64::max);
-        for direction in &self.free {
-            let share: f64 = (0..3).map(|axis| direction[axis] * jump[axis]).sum();
-            (0..3).for_each(|axis| jump[axis] -= share * direction[axis]);
-        }
-        if size(jump) > ROUNDING * largest { jump } else { [0.0; 3] }
-    }
-}
 
 /// All contact nodes of a scene.
 #[derive(Debug, Clone)]
@@ -110,9 +41,9 @@ impl ContactBoundary {
             let friction_of = friction_by_node(scene, index, &bodies[part.slave])?;
             for (node, masters) in part.nodes() {
                 let side = |body: usize, node: u32| Side { body, node, prescribed: bodies[body].prescribed(node) };
-                let masters = masters.iter().map(|&master| side(part.master_body(), master));
+                let masters = masters.iter().map(|&master| side(part.opposite.master().unwrap_or(part.slave), master));
                 let sides: Vec<Side> = std::iter::once(side(part.slave, node)).chain(masters).collect();
-                let has_weight = |side: usize| part.has_weight(node, sides[side].node);
+                let has_weight = |side: usize| part.opposite.has_weight(node, sides[side].node);
                 let free = free_directions(bodies, &sides, has_weight);
                 // A node that supports hold altogether has no contact row.
                 let Some(across) = free.len().checked_sub(1) else { continue };

@@ -1,6 +1,6 @@
 //! Derivatives of a contact state as its solver returns them.
 
-use crate::equilibrium::{ContactProblem, ContactRows, ValueError};
+use crate::equilibrium::{ContactProblem, ContactRows, RowChange, ValueError};
 use crate::shape::Velocities;
 
 /// What of a contact state is differentiated.
@@ -19,6 +19,8 @@ pub struct Tangents {
     pub forces: Vec<Vec<f64>>,
     /// Changes of the openings (normal jump less gap) of the contact nodes per change of the controls, mm.
     pub openings: Vec<Vec<f64>>,
+    /// Changes of the areas of the contact nodes per change of the controls, mm².
+    pub areas: Vec<Vec<f64>>,
     /// Changes of the displacements per change of the controls, where they were asked for: three entries along the axes
     /// per node of every body, mm. They are total derivatives at fixed nodes of the mesh, which move with
     /// the shape. Of several processes, the first one alone has the entries.
@@ -39,15 +41,15 @@ impl Tangents {
         of: TangentsOf,
     ) -> Self {
         let count = velocities.count();
-        let opening = |column| {
-            let changes = rows.changes(&problem.boundary, velocities, column);
-            changes.iter().map(|change| -change.gap).collect()
-        };
+        let changes = |column| rows.changes(&problem.boundary, velocities, column);
+        let changes: Vec<Vec<RowChange>> = (0..count).map(changes).collect();
+        let opening = |changes: &Vec<RowChange>| changes.iter().map(|change| -change.gap).collect();
         let forces = vec![vec![0.0; problem.boundary.row_count]; count];
         let displacements =
             (of == TangentsOf::Displacements).then(|| vec![vec![0.0; problem.displacement_count()]; count]);
-        let openings = (0..count).map(opening).collect();
-        Self { forces, openings, displacements, residual: 0.0, applications: 0 }
+        let openings = changes.iter().map(opening).collect();
+        let areas = changes.iter().map(|changes| rows.area_changes(changes)).collect();
+        Self { forces, openings, areas, displacements, residual: 0.0, applications: 0 }
     }
 }
 

@@ -9,7 +9,7 @@
 //! ```
 
 use crate::body::mesh::Mesh;
-use crate::equilibrium::contact_part::{COVERED, NO_WEIGHT};
+use crate::equilibrium::pair::{COVERED, NO_WEIGHT};
 use crate::mortar::vector::{dot, length, plus};
 use crate::mortar::{Along, Face, Mortar, MortarNode, QuadraticFacet};
 use crate::patches::CurvedFace;

@@ -9,8 +9,8 @@
 //! A rotation of the tangential rows in their plane changes no force, so that its derivative is taken as zero.
 
 use crate::body::onto;
-use crate::equilibrium::ContactPoint;
-use crate::scene::Foot;
+use crate::equilibrium::contact_point::ContactPoint;
+use crate::equilibrium::numbers::{Numbers, Placed};
 
 /// The rows of one contact node at a shape.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,15 +30,6 @@ pub struct NodeRows {
     pub area: f64,
     /// Whether anything lies opposite to it; a node without carries no force.
     pub is_covered: bool,
-    /// How gap and normal change with the place of the node, where an obstacle lies opposite to it.
-    slopes: Option<ObstacleSlopes>,
-}
-
-/// Slopes of gap and normal by the place of a contact node.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct ObstacleSlopes {
-    gap: [f64; 3],
-    normal: [[f64; 3]; 3],
 }
 
 /// Length of P n from which a node counts as held along its normal.
@@ -51,6 +42,8 @@ pub struct RowSensitivities {
     pub directions: Vec<[f64; 3]>,
     /// By the gap.
     pub gap: f64,
+    /// By the area.
+    pub area: f64,
     /// By the weights of the sides; empty for 0.
     pub weights: Vec<f64>,
 }
@@ -62,6 +55,8 @@ pub struct RowChange {
     pub directions: Vec<[f64; 3]>,
     /// Of the gap.
     pub gap: f64,
+    /// Of the area.
+    pub area: f64,
     /// Of the weights of the sides; empty for 0.
     pub weights: Vec<f64>,
 }
@@ -73,7 +68,7 @@ impl NodeRows {
     }
 
     /// The derivative by n of a function whose derivatives by the directions are given.
-    pub(crate) fn normal_sensitivity(&self, free: &[[f64; 3]], by_directions: &[[f64; 3]]) -> [f64; 3] {
+    fn normal_sensitivity(&self, free: &[[f64; 3]], by_directions: &[[f64; 3]]) -> [f64; 3] {
         let Some((by_normal, by_tangents)) = by_directions.split_first() else { return [0.0; 3] };
         let mut sum = onto(free, *by_normal);
         let square = dot(self.directions[0], self.directions[0]);
@@ -85,52 +80,61 @@ impl NodeRows {
     }
 
     /// The change of the directions with that of the normal.
-    pub(crate) fn turned(&self, free: &[[f64; 3]], normal: [f64; 3]) -> Vec<[f64; 3]> {
+    fn turned(&self, free: &[[f64; 3]], normal: [f64; 3]) -> Vec<[f64; 3]> {
         let square = dot(self.directions[0], self.directions[0]);
         let tangent = |tangent: &[f64; 3]| self.directions[0].map(|d| -dot(*tangent, normal) / square * d);
         let tangents = self.directions[1..].iter().map(tangent);
         std::iter::once(onto(free, normal)).chain(tangents).collect()
     }
 
-    /// The derivative by the place of a node that an obstacle lies opposite to.
-    pub(crate) fn obstacle_sensitivity(&self, free: &[[f64; 3]], own: &RowSensitivities) -> Option<[f64; 3]> {
-        let slopes = self.slopes.as_ref()?;
-        let by_normal = self.normal_sensitivity(free, &own.directions);
-        let through_normal = |j: usize| (0..3).map(|i| by_normal[i] * slopes.normal[i][j]).sum::<f64>();
-        Some(std::array::from_fn(|j| own.gap * slopes.gap[j] + through_normal(j)))
+    /// The rows of a node from its numbers. What supports impose on its sides is no unknown, and no row of its own has
+    /// it: it is part of the gap, less the interference of the contact.
+    pub(crate) fn new(point: &ContactPoint, placed: Placed, interference: f64) -> Self {
+        let Placed { numbers: Numbers { normal, gap, area, weights }, is_covered } = placed;
+        let gap = match (point.is_tied, is_covered) {
+            (true, _) => 0.0,
+            (false, true) => gap - interference - dot(normal, point.imposed(&weights)),
+            (false, false) => gap,
+        };
+        let directions = directions(&point.free, normal, point.row_count());
+        Self { normal, directions, weights, gap, area, is_covered }
     }
 
-    /// The change of the rows while the node moves along an obstacle.
-    pub(crate) fn on_obstacle(&self, free: &[[f64; 3]], velocity: [f64; 3]) -> RowChange {
-        let Some(slopes) = &self.slopes else { return RowChange::default() };
-        let normal: [f64; 3] = std::array::from_fn(|i| dot(slopes.normal[i], velocity));
-        RowChange { directions: self.turned(free, normal), gap: dot(slopes.gap, velocity), weights: Vec::new() }
-    }
-
-    /// The rows of a node whose nearest point on an obstacle is known.
-    pub(crate) fn of_obstacle(point: &ContactPoint, foot: Foot, interference: f64, area: f64) -> Self {
-        let Foot { normal, mut gap, mut gap_slope, normal_slope } = foot;
-        gap -= interference;
-        let weights = vec![1.0];
-        // What supports impose on the node is no unknown, and no row of its own has it.
-        for (i, imposed) in point.imposed(&weights).into_iter().enumerate() {
-            gap -= imposed * normal[i];
-            (0..3).for_each(|j| gap_slope[j] -= imposed * normal_slope[i][j]);
+    /// The change of the rows with that of the numbers; nothing changes where nothing lies opposite.
+    pub(crate) fn change(&self, point: &ContactPoint, numbers: Numbers) -> RowChange {
+        if !self.is_covered {
+            return RowChange { directions: vec![[0.0; 3]; self.directions.len()], ..RowChange::default() };
         }
-        let directions = directions(&point.free, normal, point.row_count());
-        let slopes = Some(ObstacleSlopes { gap: gap_slope, normal: normal_slope });
-        Self { normal, directions, weights, gap, area, is_covered: true, slopes }
+        let Numbers { normal, gap, area, weights } = numbers;
+        let gap = if point.is_tied {
+            0.0
+        } else {
+            let by_weights = weights.iter().zip(self.gap_slopes(point)).map(|(weight, slope)| weight * slope);
+            gap - dot(normal, point.imposed(&self.weights)) + by_weights.sum::<f64>()
+        };
+        RowChange { directions: self.turned(&point.free, normal), gap, area, weights }
     }
 
-    /// The rows of a node that nothing lies opposite to.
-    pub(crate) fn away(point: &ContactPoint, normal: [f64; 3], weights: Vec<f64>, gap: f64, area: f64) -> Self {
-        Self { is_covered: false, ..Self::of_pair(point, normal, weights, gap, area) }
+    /// The sensitivities by the numbers from those by the rows.
+    pub(crate) fn pull_back(&self, point: &ContactPoint, own: &RowSensitivities) -> Numbers {
+        if !self.is_covered {
+            return Numbers::default();
+        }
+        let gap = if point.is_tied { 0.0 } else { own.gap };
+        let (by_directions, imposed) =
+            (self.normal_sensitivity(&point.free, &own.directions), point.imposed(&self.weights));
+        let normal = std::array::from_fn(|axis| by_directions[axis] - gap * imposed[axis]);
+        let mut weights = own.weights.clone();
+        weights.resize(point.sides.len(), 0.0);
+        weights.iter_mut().zip(self.gap_slopes(point)).for_each(|(sum, slope)| *sum += gap * slope);
+        Numbers { normal, gap, area: own.area, weights }
     }
 
-    /// The rows of a node with given weights of its sides.
-    pub(crate) fn of_pair(point: &ContactPoint, normal: [f64; 3], weights: Vec<f64>, gap: f64, area: f64) -> Self {
-        let directions = directions(&point.free, normal, point.row_count());
-        Self { normal, directions, weights, gap, area, is_covered: true, slopes: None }
+    /// The derivatives of the gap by the weights of all sides through what supports impose on them.
+    fn gap_slopes<'a>(&self, point: &'a ContactPoint) -> impl Iterator<Item = f64> + use<'a> {
+        // n − P n: what of the normal no row has.
+        let rest: [f64; 3] = std::array::from_fn(|axis| self.normal[axis] - self.directions[0][axis]);
+        point.sides.iter().map(move |side| -dot(rest, side.prescribed))
     }
 
     /// P n and all tangential directions that are free, whether they have rows or not.

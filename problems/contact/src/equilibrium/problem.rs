@@ -9,12 +9,14 @@ use crate::equilibrium::contact_moduli;
 use crate::equilibrium::contact_part::ContactPart;
 use crate::equilibrium::curved_faces::curved_faces;
 use crate::equilibrium::modes::{Frame, RigidScene};
-use crate::equilibrium::{ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows};
+use crate::equilibrium::{
+    ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows, RowSensitivities,
+};
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
 use crate::patches::{CurvedFace, MiddlePoint};
 use crate::scene::{Geometry, Scene};
-use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap, ShapeScene, Velocities, height_map};
+use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap, ShapeScene, height_map};
 use std::sync::Arc;
 
 /// Poisson's ratio from which standard cells are nearly incompressible: total FETI takes hundreds of products.
@@ -250,25 +252,18 @@ impl ContactProblem {
         self.geometry.areas_change()
     }
 
-    /// The changes of the areas of all contact nodes along one field of velocities.
-    pub(crate) fn area_changes(
-        &self,
-        rows: &ContactRows,
-        positions: &Positions,
-        velocities: &Velocities<'_>,
-        column: usize,
-    ) -> Vec<f64> {
-        self.geometry.area_changes((&self.boundary, rows), &self.bodies, positions, velocities, column)
-    }
-
     /// The sensitivities of the positions of all nodes from those of the areas of all contact nodes.
-    pub(crate) fn pull_back_areas(&self, rows: &ContactRows, positions: &Positions, areas: &[f64]) -> Vec<[f64; 3]> {
+    pub(crate) fn pull_back_areas(&self, rows: &ContactRows, areas: &[f64]) -> Vec<[f64; 3]> {
         let mut result = self.no_sensitivities();
-        let moves = |body: usize, node: u32| self.map.moves(body, node);
-        let rows = (&self.boundary, rows);
-        self.geometry.pull_back_areas(rows, &self.bodies, positions, areas, moves, |body, node, sensitivity| {
-            add_at(&mut result, self.node_number(body, node), sensitivity);
-        });
+        if self.areas_change() {
+            let by_area = |node: usize| areas.get(node).copied().unwrap_or(0.0);
+            let own = |node| RowSensitivities { area: by_area(node), ..RowSensitivities::default() };
+            let sensitivities: Vec<_> = (0..self.boundary.points.len()).map(own).collect();
+            let moves = |body: usize, node: u32| self.map.moves(body, node);
+            rows.pull_back(&self.boundary, &sensitivities, moves, |body, node, sensitivity| {
+                add_at(&mut result, self.node_number(body, node), sensitivity);
+            });
+        }
         result
     }
 

@@ -65,7 +65,7 @@ pub(crate) fn row_sensitivities(
             -point.rows().zip(&node.directions).map(term).sum::<f64>()
         };
         let weights = if point.sides.len() > 1 { point.sides.iter().map(of_side).collect() } else { Vec::new() };
-        RowSensitivities { directions: point.rows().map(of_row).collect(), gap, weights }
+        RowSensitivities { directions: point.rows().map(of_row).collect(), gap, area: 0.0, weights }
     };
     boundary.points.iter().zip(&rows.nodes).map(of_node).collect()
 }

@@ -2,17 +2,18 @@
 
 use crate::body::{Body, TraceWeights};
 use crate::equilibrium::node_rows::{NodeRows, RowChange, RowSensitivities, dot};
-use crate::equilibrium::pair_rows::PairRows;
+use crate::equilibrium::opposite::Facing;
 use crate::equilibrium::{ContactBoundary, ContactPoint, ContactStatus};
 use crate::shape::Velocities;
+use std::sync::Arc;
 
 /// The rows of all contact nodes at a shape, in the order of [`ContactBoundary::points`].
 #[derive(Debug, Clone, Default)]
 pub struct ContactRows {
     /// The rows of every node.
     pub nodes: Vec<NodeRows>,
-    /// What the rows of every contact between bodies are computed from; none for obstacles.
-    pub(crate) pairs: Vec<Option<PairRows>>,
+    /// What the numbers of the nodes change with, in the order of [`ContactBoundary::contacts`].
+    pub(crate) facing: Vec<Arc<dyn Facing>>,
     /// The weights in the weighted displacements of every body.
     pub(crate) traces: Vec<TraceWeights>,
     /// Number of nodes that may open, which come first.
@@ -20,7 +21,7 @@ pub struct ContactRows {
 }
 
 impl ContactRows {
-    /// Adds sensitivities with respect to directions, weights and gaps to those of the positions of nodes:
+    /// Adds sensitivities with respect to directions, weights, gaps and areas to those of the positions of nodes:
     /// `add(body, node, sensitivity)`. `moves`: whether a node of a body moves with the shape.
     pub fn pull_back(
         &self,
@@ -29,36 +30,31 @@ impl ContactRows {
         moves: impl Fn(usize, u32) -> bool + Sync,
         mut add: impl FnMut(usize, u32, [f64; 3]),
     ) {
-        for ((point, node), own) in boundary.points.iter().zip(&self.nodes).zip(sensitivities) {
-            if let Some(sensitivity) = node.obstacle_sensitivity(&point.free, own) {
-                add(point.body, point.node, sensitivity);
-            }
-        }
-        for (contact, pair) in self.pairs.iter().enumerate() {
-            if let Some(pair) = pair {
-                let range = boundary.of_contact(contact);
-                let points = (&boundary.points[range.clone()], &self.nodes[range.clone()]);
-                pair.pull_back(points, &sensitivities[range], &moves, &mut add);
-            }
+        let of_node =
+            |((point, node), own): ((&ContactPoint, &NodeRows), &RowSensitivities)| node.pull_back(point, own);
+        let numbers: Vec<_> = boundary.points.iter().zip(&self.nodes).zip(sensitivities).map(of_node).collect();
+        for (contact, facing) in boundary.contacts().zip(&self.facing) {
+            let range = boundary.of_contact(contact);
+            let nodes = (&boundary.points[range.clone()], &self.nodes[range.clone()]);
+            facing.pull_back(nodes, &numbers[range], &moves, &mut add);
         }
     }
 
     /// The changes of the rows of all nodes along one field of velocities.
     pub fn changes(&self, boundary: &ContactBoundary, velocities: &Velocities<'_>, column: usize) -> Vec<RowChange> {
         let mut changes = Vec::with_capacity(self.nodes.len());
-        for contact in boundary.contacts() {
-            let (pair, range) = (&self.pairs[contact], boundary.of_contact(contact));
+        for (contact, facing) in boundary.contacts().zip(&self.facing) {
+            let range = boundary.of_contact(contact);
             let (points, nodes) = (&boundary.points[range.clone()], &self.nodes[range]);
-            match pair {
-                Some(pair) => changes.extend(pair.changes((points, nodes), velocities, column)),
-                None => {
-                    changes.extend(points.iter().zip(nodes).map(|(point, node)| {
-                        node.on_obstacle(&point.free, velocities.at(point.body, point.node, column))
-                    }))
-                }
-            }
+            let numbers = facing.changes((points, nodes), velocities, column);
+            changes.extend(points.iter().zip(nodes).zip(numbers).map(|((point, node), own)| node.change(point, own)));
         }
         changes
+    }
+
+    /// The changes of the areas of the nodes that may open, mm², among those of all rows.
+    pub(crate) fn area_changes(&self, changes: &[RowChange]) -> Vec<f64> {
+        changes[..self.contact_count].iter().map(|change| change.area).collect()
     }
 
     /// σ = λ_N/A per contact node that may open, MPa, of normal forces in N.

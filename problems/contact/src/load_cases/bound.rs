@@ -149,8 +149,7 @@ impl Bound {
                     .iter()
                     .zip(by_force)
                     .for_each(|(point, slope)| dual[point.start] = -slope);
-                let positions =
-                    problem.pull_back_areas(&state.rows, &problem.map.positions(control.as_slice()), &by_area);
+                let positions = problem.pull_back_areas(&state.rows, &by_area);
                 let explicit = Vector::from_vec(problem.map.pull_back(&positions));
                 cases.gradient(self.case, states, &CostGradient { control: explicit, state: dual })?
             }

@@ -207,7 +207,7 @@ impl LoadCases {
             let pressures = count - usize::from(case.field.is_some());
             if case.with_pressures {
                 let own = Vector::from_column_slice(&own[..pressures]);
-                add(&case.shape.output_position_gradient(control, state, &own), 1.0);
+                add(&case.shape.output_position_gradient(state, &own), 1.0);
             }
             if let (Some(field), Some(bodies)) = (&case.field, &state.bodies) {
                 add(&field.gradient_of(bodies).positions, own[pressures]);

@@ -61,6 +61,8 @@ struct TangentSystem<'a, D, const N: usize> {
     loads: ShapeLoads<D, N>,
     /// ∂B u − ∂g over the packed contact rows, mm.
     approaches: Vec<Row<D, N>>,
+    /// Changes of the areas of the contact nodes, mm².
+    areas: Vec<Vec<f64>>,
     count: usize,
 }
 
@@ -99,9 +101,9 @@ pub fn tangents(
     changes: &[Vec<f64>],
 ) -> Result<Tangents, ContactError> {
     let active = contact.active_set(linearizations.to_vec(), Friction::Coulomb)?;
-    let (forces, openings) = (Vec::new(), Vec::new());
+    let (forces, openings, areas) = (Vec::new(), Vec::new(), Vec::new());
     let displacements = request.whole.map(|_| Vec::new());
-    let mut tangents = Tangents { forces, openings, displacements, residual: 0.0, applications: 0 };
+    let mut tangents = Tangents { forces, openings, areas, displacements, residual: 0.0, applications: 0 };
     let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
     for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
         match batch.len().div_ceil(LANES) {
@@ -158,7 +160,8 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         let traces = traces.map(|work| work.along(&velocities));
         let loads = ShapeLoads::new(operator.model, operator.system, shape, (&velocities, traces.as_ref()), &rows);
         let approaches = approaches(operator.model, shape, traces.as_ref(), &rows);
-        Self { contact, active, loads, approaches, count: changes.len() }
+        let areas = rows.iter().map(|changes| shape.rows.area_changes(changes)).collect();
+        Self { contact, active, loads, approaches, areas, count: changes.len() }
     }
 
     /// Brings unknowns into equilibrium and computes their residual.
@@ -274,6 +277,7 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
             let nodes = iterate.openings.iter().zip(&constraints.normalisation);
             tangents.openings.push(nodes.map(|(opening, nu)| opening.get(column) * nu).collect());
         }
+        tangents.areas.extend_from_slice(&self.areas);
         if let (Some(positions), Some(displacements)) = (whole, &mut tangents.displacements) {
             displacements.extend(self.displacements(&iterate.unknowns, positions));
         }
