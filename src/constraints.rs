@@ -172,7 +172,8 @@ impl Polyhedron {
     }
 
     /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point
-    /// whose entries happen to be near zero then does not depend on its rounding errors.
+    /// whose entries happen to be near zero then does not depend on its rounding errors
+    /// ([`ScaledNorm::sizes`](crate::ScaledNorm)).
     pub(crate) fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         let sides = self.lower.as_slice().iter().zip(self.upper.as_slice());

@@ -12,6 +12,10 @@ use crate::qp::kernels::{weighted_squared_distance, weighted_squares};
 use crate::{InputError, Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
+/// Share of the length of a step that an entry of its end must exceed to count among the terms of a row: rows are met to
+/// 1e-12 of their terms, and the entries of a step have errors of some 1e-15 of its length.
+const ROUNDED_SHARE: f64 = 1e-2;
+
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
@@ -157,6 +161,12 @@ impl ScaledNorm {
             Scale::Weights(weights) => 1.0 / weights[i].sqrt(),
             Scale::Linear(Coordinates { matrix, .. }) => matrix.row(i).norm(),
         }
+    }
+
+    /// Sizes of the variables for violations of rows at a point: its entries or, where these happen to be near zero, a
+    /// share of a length in every variable, below which an entry is rounding of a step of this length.
+    pub(crate) fn sizes(&self, point: &Vector, length: f64) -> Vector {
+        Vector::from_fn(point.len(), |i, _| point[i].abs().max(ROUNDED_SHARE * length * self.unit(i)))
     }
 
     /// Whether W is the identity.

@@ -66,10 +66,13 @@ impl<'o> BundleTrust<'o> {
         clock: Instant,
     ) -> Result<Run<'r, 'o>, OptimizeError> {
         let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
-        let start = admissible_start(&set, dimension, x0)?;
+        InputError::check_vector("start point", dimension, &x0)?;
+        check_size("constraints", dimension, set.dimension())?;
+        let norm = ScaledNorm::new(&self.config.scaling, &set)?;
+        let start = admissible_start(&set, &norm, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
         let (state, linearization) =
-            first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, &set, start)?;
+            first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, (&set, norm), start)?;
         oracle.keep_warm_start();
         let proposers = Proposers::new(outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
@@ -102,10 +105,8 @@ impl<'o> BundleTrust<'o> {
     }
 }
 
-/// Checks sizes, and moves the start into the admissible set.
-fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Vector, OptimizeError> {
-    InputError::check_vector("start point", dimension, &x0)?;
-    check_size("constraints", dimension, set.dimension())?;
+/// Moves the start into the admissible set.
+fn admissible_start(set: &Polyhedron, norm: &ScaledNorm, x0: Vector) -> Result<Vector, OptimizeError> {
     let before = set.violation(&x0);
     if before <= FEASIBILITY {
         return Ok(set.clamp_to_box(&x0));
@@ -114,7 +115,7 @@ fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Ve
         QpError::Infeasible { violation } => OptimizeError::Infeasible { violation },
         _ => OptimizeError::Infeasible { violation: before },
     })?;
-    let violation = set.violation_near(&projected, &x0);
+    let violation = set.violation_near(&projected, &norm.sizes(&x0, norm.length(&(&projected - &x0))));
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
@@ -126,10 +127,9 @@ fn first_evaluation(
     oracle: &mut dyn Oracle,
     (structured, kinds): (bool, &[ConstraintKind]),
     config: &BundleTrustConfig,
-    set: &Polyhedron,
+    (set, norm): (&Polyhedron, ScaledNorm),
     start: Vector,
 ) -> Result<FirstEvaluation, OptimizeError> {
-    let norm = ScaledNorm::new(&config.scaling, set)?;
     let accuracy = first_accuracy(config)?;
     let wanted = structured.then(|| LinearizationRequest::below(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };

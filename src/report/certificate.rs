@@ -119,7 +119,8 @@ impl Certificate {
             total += cut.multiplier;
             negative = negative.max(-cut.multiplier);
         }
-        let mut violation = set.violation_near(&self.point, &self.point);
+        let lengths = self.cuts.iter().map(|cut| self.norm.length(&(&self.point - &cut.point)));
+        let mut violation = set.violation_near(&self.point, &self.norm.sizes(&self.point, lengths.fold(0.0, f64::max)));
         if let Some(constraints) = &self.constraints {
             let (slopes, slack, wrong_sign) = constraints.sums(&self.point)?;
             aggregate += slopes;

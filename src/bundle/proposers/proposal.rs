@@ -176,7 +176,8 @@ impl Proposal {
     /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the
     /// center, which is admissible.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
-        let violation = |x: &Vector| set.violation_near(x, &state.center);
+        let sizes = state.norm.sizes(&state.center, state.norm.length(&self.step));
+        let violation = |x: &Vector| set.violation_near(x, &sizes);
         self.trial = set.clamp_to_box(&self.trial);
         self.violation = violation(&self.trial);
         let allowed =
