@@ -130,6 +130,16 @@ impl Polyhedron {
         }
     }
 
+    /// The set with some of its rows only; none of them is a linearization.
+    pub(crate) fn with_rows_kept(&self, kept: &[usize]) -> Self {
+        Self {
+            rows: self.rows.select_rows(kept),
+            row_lower: self.row_lower.select_rows(kept),
+            row_upper: self.row_upper.select_rows(kept),
+            ..self.clone()
+        }
+    }
+
     /// Number of the last rows that are linearizations at a center.
     pub(crate) fn tangents(&self) -> usize {
         self.tangents

@@ -45,6 +45,7 @@ impl RunOutcome {
             Termination::Stationary { .. } => "stationary",
             Termination::StationaryUnconfirmed { .. } => "stationary_unconfirmed",
             Termination::Infeasible { .. } => "infeasible",
+            Termination::Violated { .. } => "violated",
             Termination::DegenerateConstraints { .. } => "degenerate_constraints",
             Termination::NoiseLimit { .. } => "noise_limit",
             Termination::StepTooShort { .. } => "step_too_short",

@@ -19,7 +19,15 @@ impl Run<'_, '_> {
     /// itself.
     pub fn finish(mut self) -> Report {
         self.end_at_lowest();
-        let warnings = if self.is_plateau() { vec![PLATEAU.into()] } else { vec![] };
+        self.tell_violation();
+        let plateau = self.is_plateau().then(|| PLATEAU.to_owned());
+        let contradiction = self.rows.contradiction.map(|(row, by)| {
+            format!(
+                "row {row} of the admissible set depends on other rows and contradicts them by {by:.1e} of their sides, \
+                 which counts as rounding"
+            )
+        });
+        let warnings = plateau.into_iter().chain(contradiction).collect();
         let proof = match self.proof.take() {
             Some(proof) => Some(proof),
             None => self.ask(|proposers, at| proposers.plain_proof(at)),
@@ -48,6 +56,27 @@ impl Run<'_, '_> {
         }
     }
 
+    /// A run that ended by itself at a point that violates constraints says so. One that was ended from outside may
+    /// have reached a better point later.
+    fn tell_violation(&mut self) {
+        let Some(constraints) = self.state.constraints.as_deref() else { return };
+        let ended = matches!(
+            self.termination,
+            Some(
+                Termination::Stationary { .. }
+                    | Termination::StationaryUnconfirmed { .. }
+                    | Termination::NoiseLimit { .. }
+                    | Termination::StepTooShort { .. }
+                    | Termination::DegenerateConstraints { .. }
+            )
+        );
+        if ended && constraints.center_excess() > 1.0 {
+            let (constraint, violation) = constraints.worst();
+            let end = self.termination.take().map_or_else(String::new, |end| end.to_string());
+            self.termination = Some(Termination::Violated { constraint, violation, end });
+        }
+    }
+
     /// Whether Θ is constant around a stationary center: value and vanishing subgradient are those of the points a
     /// first step away, both ways along a direction without pattern. At a smooth minimum the values differ. They are
     /// evaluated only where the run has seen no slope at all, or the same at another point: no minimum at a kink costs
@@ -68,7 +97,7 @@ impl Run<'_, '_> {
         }
         let direction = Vector::from_fn(center.len(), |i, _| (1.7 * i as f64 + 0.5).cos());
         let direction = &direction * (self.state.first_step / self.state.norm.length(&direction));
-        let set = self.set.clone();
+        let set = self.rows.set.clone();
         let points = [direction.clone(), -direction].into_iter().map(|step| set.clamp_to_box(&(&center + step)));
         let points: Vec<Vector> = points.filter(|point| *point != center && set.violation(point) <= 0.0).collect();
         !points.is_empty()
@@ -113,9 +142,10 @@ impl Run<'_, '_> {
         let mut certificate = proof.certificate(self.of_bundle(&proof.proposal));
         // As a later check computes them. Where the weight is small, the step tells them less accurately than the
         // multipliers do.
-        if let Ok(check) = certificate.recheck(&self.set) {
+        if let Ok(check) = certificate.recheck(&self.rows.set) {
             (certificate.aggregate_norm, certificate.aggregate_error) = (check.aggregate_norm, check.aggregate_error);
         }
+        certificate.row_multipliers = self.rows.whole_multipliers(&certificate.row_multipliers);
         certificate
     }
 

@@ -14,15 +14,17 @@ use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
 use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
 use crate::interruption::until;
-use crate::qp::EpigraphQpSolver;
+use crate::qp::{EpigraphQpSolver, IndependentRows, nearest};
 use crate::report::{IterationRecord, Noted, Origin, StepKind, Termination};
-use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
+use crate::{Accuracy, Answer, Evaluation, OracleError, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::rc::Rc;
 use std::time::Instant;
 
 /// Failures end the run only where the oracle fails next to the center: within this share of the length scale.
 const CLOSE: f64 = 1e-6;
+/// Share of a stationary violation up to which another point violates the constraints less.
+const LESS_VIOLATED: f64 = 0.99;
 /// Known trial points in a row after which no weight leads away from them.
 const MAX_KNOWN_TRIALS: usize = 100;
 
@@ -44,7 +46,8 @@ pub struct Run<'r, 'o> {
     pub(super) oracle: Box<dyn Oracle + 'r>,
     /// The convex function of a composite objective, if its model is wanted.
     pub(super) outer: Option<&'r dyn OuterFunction>,
-    pub(super) set: Polyhedron,
+    /// The admissible set without equality rows that depend on others.
+    pub(super) rows: IndependentRows,
     /// The set of the subproblems where there are nonlinear constraints, with the center and the linearizations that it
     /// belongs to.
     pub(super) working: Option<((u64, u64), Rc<WorkingSet>)>,
@@ -55,6 +58,8 @@ pub struct Run<'r, 'o> {
     /// The proof that has ended the run.
     pub(super) proof: Option<Proof>,
     pub(super) clock: Instant,
+    /// The center at which ways out of a stationary violation were last tried, and how many.
+    pub(super) ways_out: (u64, usize),
 }
 
 impl Run<'_, '_> {
@@ -77,7 +82,7 @@ impl Run<'_, '_> {
             return Break(self.standing_proof(limit));
         }
         if self.working_set().is_some_and(|working| working.stationary) {
-            return Break(Termination::Infeasible { violation: self.state.violation() }.into());
+            return self.lead_out();
         }
         let proposal = self.propose()?;
         let (state, config) = (&self.state, &self.method.config);
@@ -104,6 +109,56 @@ impl Run<'_, '_> {
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
 
+    /// A point a first step away from a center at which the violation is stationary: along the objective, then both
+    /// ways along a direction without pattern, where the violation may fall to second order. One that violates the
+    /// constraints less becomes the center; the run ends where none does.
+    fn lead_out(&mut self) -> ControlFlow<Ending> {
+        let violation = self.state.violation();
+        let end = || Break(Termination::Infeasible { violation }.into());
+        let Some((trial, number)) = self.way_out() else { return end() };
+        self.ways_out = (self.state.center_id, number + 1);
+        let Some(proof) = self.ask(|proposers, at| proposers.plain_proof(at)) else { return end() };
+        let Ok(proposal) = proof.proposal.moved_to(trial, &self.rows.set, &self.state) else { return Continue(()) };
+        let accuracy = demand::for_trial(&self.state, &self.method.config, self.state.center_value.abs());
+        match self.evaluate(&proposal.trial, accuracy, None, f64::INFINITY) {
+            OracleResult::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
+            OracleResult::Answer(answer) => {
+                let mut evaluation = answer.into_evaluation();
+                let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
+                self.learn_slope(&evaluation);
+                self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, false);
+                let kind = if self.state.newest_violation() <= LESS_VIOLATED * violation {
+                    self.state.move_center(accuracy);
+                    self.oracle.keep_warm_start();
+                    self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
+                    StepKind::Serious
+                } else {
+                    self.state.reject_constraints(false);
+                    StepKind::Null
+                };
+                let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
+                record(&mut self.state, &proposal, accuracy, event, self.clock);
+            }
+        }
+        limits::after_evaluation(&self.state, self.method).map_break(Into::into)
+    }
+
+    /// The next point to be tried where the violation is stationary, with its number; none after the last one.
+    fn way_out(&self) -> Option<(Vector, usize)> {
+        let (state, n) = (&self.state, self.state.center.len());
+        let tried = if self.ways_out.0 == state.center_id { self.ways_out.1 } else { 0 };
+        let objective = state.bundle.cut(state.center_id).map(|cut| -state.norm.raise_index(&cut.subgradient));
+        let aside = Vector::from_fn(n, |i, _| (1.7 * i as f64 + 0.5).cos() * state.norm.unit(i));
+        let ways = [objective.unwrap_or_else(|| Vector::zeros(n)), aside.clone(), -aside];
+        ways.into_iter().enumerate().skip(tried).find_map(|(number, way)| {
+            let length = state.norm.length(&way);
+            let trial = &state.center + way * (state.first_step / length);
+            (length > 0.0).then(|| nearest(&self.rows.set, &trial).ok()).flatten().map(|trial| (trial, number))
+        })
+    }
+
     /// The next trial point, or the end: by a proof, or because the time of the run passes before either is found.
     fn propose(&mut self) -> ControlFlow<Ending, Proposal> {
         let deadline = limits::deadline(&self.method.config, self.clock);
@@ -125,7 +180,7 @@ impl Run<'_, '_> {
         self.solver.forget();
         let before = self.solver.counts();
         let working = self.working_set();
-        let set = working.as_ref().map_or(&self.set, |working| &working.set);
+        let set = working.as_ref().map_or(&self.rows.set, |working| &working.set);
         let (config, outer, working) = (&self.method.config, self.outer, working.as_deref());
         let mut at = Position { state: &mut self.state, set, working, config, solver: &mut self.solver, outer };
         let answer = question(&mut self.proposers, &mut at);
@@ -146,7 +201,7 @@ impl Run<'_, '_> {
                 let reach = self.state.length_scale().max(self.state.first_step);
                 let (center, norm) = (&self.state.center, &self.state.norm);
                 let working =
-                    WorkingSet::new(&self.set, constraints, center, (norm, negligible, reach), &mut self.solver);
+                    WorkingSet::new(&self.rows.set, constraints, center, (norm, negligible, reach), &mut self.solver);
                 let working = Rc::new(working);
                 self.working = Some((wanted, Rc::clone(&working)));
                 Some(working)
@@ -232,6 +287,7 @@ impl Run<'_, '_> {
         if accurate {
             noise::watch(&mut self.state, self.method.config.convexity, proposal, &evaluation);
         }
+        self.learn_slope(&evaluation);
         let trial = Trial::new(&self.state, proposal, (&evaluation, accurate), known.as_ref());
         self.ask(|proposers, at| proposers.learn(at, &trial));
         self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, !accurate);
@@ -249,6 +305,21 @@ impl Run<'_, '_> {
         self.ask(|proposers, at| proposers.update(at, &trial));
         let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
         record(&mut self.state, proposal, accuracy, event, self.clock);
+    }
+
+    /// Takes the first subgradient of the objective that is not 0 as the unit of weights and penalty, where that of an
+    /// infeasible start is.
+    fn learn_slope(&mut self, evaluation: &Evaluation<()>) {
+        let state = &mut self.state;
+        let (Some(constraints), Some(found)) = (&mut state.constraints, &evaluation.constraints) else { return };
+        if constraints.objective_slope > 0.0 || constraints.center_excess() <= 1.0 {
+            return;
+        }
+        let slope = state.norm.dual_length(&evaluation.subgradient);
+        constraints.learn_slope(slope, evaluation.value - state.center_value, &found.values);
+        if slope > 0.0 {
+            state.weight = slope / state.first_step;
+        }
     }
 
     /// Counts a Jacobian; returns the linearization, if there is one, and what the record says about it.

@@ -16,7 +16,7 @@ use super::state::BundleState;
 use super::verdict;
 use crate::checks::check_size;
 use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
-use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
+use crate::qp::{EpigraphQpSolver, IndependentRows, QpError, is_only_point, least_violation, nearest};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
     Accuracy, ConstraintKind, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron,
@@ -69,17 +69,18 @@ impl<'o> BundleTrust<'o> {
         InputError::check_vector("start point", dimension, &x0)?;
         check_size("constraints", dimension, set.dimension())?;
         let norm = ScaledNorm::new(&self.config.scaling, &set)?;
-        let start = admissible_start(&set, &norm, x0)?;
+        let rows = IndependentRows::new(&set, |i| norm.unit(i));
+        let start = admissible_start(&set, &rows, &norm, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
         let (state, linearization) =
-            first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, (&set, norm), start)?;
+            first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, (&rows.set, norm), start)?;
         oracle.keep_warm_start();
         let proposers = Proposers::new(outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
             method: self,
             oracle,
             outer,
-            set,
+            rows,
             working: None,
             state,
             solver: EpigraphQpSolver::default(),
@@ -87,6 +88,7 @@ impl<'o> BundleTrust<'o> {
             termination: None,
             proof: None,
             clock,
+            ways_out: (0, 0),
         };
         let (known, noted) = run.take_linearization(linearization);
         run.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
@@ -97,7 +99,7 @@ impl<'o> BundleTrust<'o> {
         }
         if let Break(termination) = limits::after_evaluation(&run.state, run.method) {
             run.termination = Some(termination);
-        } else if is_only_point(&run.set, &run.state.center, run.state.length_scale().max(run.state.first_step)) {
+        } else if is_only_point(&run.rows.set, &run.state.center, run.state.length_scale().max(run.state.first_step)) {
             // Every subgradient is balanced by the constraints: nothing is left to find.
             run.termination = Some(run.ask(|_, at| verdict::only_point(at)));
         }
@@ -106,16 +108,25 @@ impl<'o> BundleTrust<'o> {
 }
 
 /// Moves the start into the admissible set.
-fn admissible_start(set: &Polyhedron, norm: &ScaledNorm, x0: Vector) -> Result<Vector, OptimizeError> {
+fn admissible_start(
+    set: &Polyhedron,
+    rows: &IndependentRows,
+    norm: &ScaledNorm,
+    x0: Vector,
+) -> Result<Vector, OptimizeError> {
+    if rows.contradicts() {
+        return Err(OptimizeError::Infeasible { violation: least_violation(set, &set.clamp_to_box(&x0)) });
+    }
+    let set = &rows.set;
     let before = set.violation(&x0);
     if before <= FEASIBILITY {
         return Ok(set.clamp_to_box(&x0));
     }
-    let projected = project(set, &x0).map_err(|error| match error {
+    let projected = nearest(set, &x0).map_err(|error| match error {
         QpError::Infeasible { violation } => OptimizeError::Infeasible { violation },
         _ => OptimizeError::Infeasible { violation: before },
     })?;
-    let violation = set.violation_near(&projected, &norm.sizes(&x0, norm.length(&(&projected - &x0))));
+    let violation = set.violation_near(&projected, &norm.sizes(&x0, &(&projected - &x0)));
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 

@@ -23,6 +23,7 @@ mod factor;
 mod gram;
 #[cfg(test)]
 mod gram_tests;
+mod independent_rows;
 #[cfg(feature = "interior-point")]
 pub(crate) mod interior_point;
 pub(crate) mod kernels;
@@ -38,7 +39,9 @@ mod working_set;
 
 pub use certificate::kkt_residual;
 pub(crate) use gram::Gram;
+pub(crate) use independent_rows::IndependentRows;
+pub(crate) use least_violation::least_violation;
 pub use problem::{EpigraphQp, Metric, QpCounts, QpError, QpMethod, QpSolution};
-pub(crate) use projection::is_only_point;
 pub use projection::project;
+pub(crate) use projection::{is_only_point, nearest};
 pub use solver::EpigraphQpSolver;

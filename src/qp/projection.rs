@@ -5,6 +5,7 @@
 //! ```
 //! In d = y − x this is the QP with the single cut 0 ≤ v and H = I.
 
+use super::independent_rows::IndependentRows;
 use super::least_violation::least_violation;
 use super::problem::{EpigraphQp, Metric, QpError};
 use super::solver::EpigraphQpSolver;
@@ -26,26 +27,35 @@ use crate::{InputError, Polyhedron, Vector};
 /// ```
 pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     InputError::check_vector("point", set.dimension(), x)?;
+    let rows = IndependentRows::new(set, |_| 1.0);
+    if rows.contradicts() {
+        return Err(QpError::Infeasible { violation: least_violation(set, &set.clamp_to_box(x)) });
+    }
+    nearest(&rows.set, x)
+}
+
+/// As [`project`], onto a set whose equality rows are independent.
+pub(crate) fn nearest(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     let clamped = set.clamp_to_box(x);
     if clamped == *x && set.violation(x) == 0.0 {
         return Ok(clamped);
     }
     let first = shortest_step(set, x).map_err(|error| measured(set, &clamped, error))?;
-    let mut nearest = set.clamp_to_box(&(x + first));
+    let mut point = set.clamp_to_box(&(x + first));
     // The rounding of a step is relative to its length: a second, tiny step lands closer.
     for _ in 0..REFINEMENTS {
-        let violation = set.violation(&nearest);
+        let violation = set.violation(&point);
         if violation <= f64::EPSILON {
             break;
         }
-        let Ok(step) = shortest_step(set, &nearest) else { break };
-        let candidate = set.clamp_to_box(&(&nearest + step));
+        let Ok(step) = shortest_step(set, &point) else { break };
+        let candidate = set.clamp_to_box(&(&point + step));
         if set.violation(&candidate) >= violation {
             break;
         }
-        nearest = candidate;
+        point = candidate;
     }
-    Ok(nearest)
+    Ok(point)
 }
 
 /// The solver reports the violation of one side where it gave up, or none at all; what is told is the least that a
@@ -72,7 +82,7 @@ pub(crate) fn is_only_point(set: &Polyhedron, x: &Vector, distance: f64) -> bool
     }
     let n = x.len();
     let direction = |k: usize| Vector::from_fn(n, |i, _| if k == n { -distance } else { distance * f64::from(i == k) });
-    (0..=n).all(|k| project(set, &(x + direction(k))).is_ok_and(|nearest| (nearest - x).amax() <= ALONE * distance))
+    (0..=n).all(|k| nearest(set, &(x + direction(k))).is_ok_and(|point| (point - x).amax() <= ALONE * distance))
 }
 
 /// Relative violation of a point that counts as one of the set.

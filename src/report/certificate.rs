@@ -119,8 +119,10 @@ impl Certificate {
             total += cut.multiplier;
             negative = negative.max(-cut.multiplier);
         }
-        let lengths = self.cuts.iter().map(|cut| self.norm.length(&(&self.point - &cut.point)));
-        let mut violation = set.violation_near(&self.point, &self.norm.sizes(&self.point, lengths.fold(0.0, f64::max)));
+        let steps = self.cuts.iter().map(|cut| &self.point - &cut.point);
+        let longest = steps.max_by(|a, b| self.norm.squared(a).total_cmp(&self.norm.squared(b)));
+        let longest = longest.unwrap_or_else(|| Vector::zeros(self.point.len()));
+        let mut violation = set.violation_near(&self.point, &self.norm.sizes(&self.point, &longest));
         if let Some(constraints) = &self.constraints {
             let (slopes, slack, wrong_sign) = constraints.sums(&self.point)?;
             aggregate += slopes;

@@ -34,6 +34,15 @@ pub enum Termination {
         /// The violation: the largest c_j⁺ over ‖∇c_j‖*, a length.
         violation: f64,
     },
+    /// The run ended by itself at a point that violates a nonlinear constraint.
+    Violated {
+        /// The constraint that is violated most, counted from 0.
+        constraint: usize,
+        /// Its violation, c_j or |c_j| of an equality.
+        violation: f64,
+        /// How the run ended there.
+        end: String,
+    },
     /// The point is feasible and no model finds anything lower, but the gradients of the active constraints cancel or
     /// vanish: multipliers need not exist, and nothing is proved.
     DegenerateConstraints {
@@ -108,6 +117,7 @@ impl Termination {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
             Self::Infeasible { .. } => "start elsewhere, or relax the constraints",
+            Self::Violated { .. } => "start elsewhere, and check the derivatives of the constraint",
             Self::DegenerateConstraints { .. } => {
                 "write the constraints so that their gradients do not vanish or oppose each other"
             }
@@ -158,6 +168,9 @@ impl fmt::Display for Termination {
                     f,
                     "infeasible: the violation of the constraints is stationary, at a distance of about {violation:.1e}"
                 )
+            }
+            Self::Violated { constraint, violation, end } => {
+                write!(f, "constraint {constraint} (counted from 0) is violated by {violation:.1e}; {end}")
             }
             Self::DegenerateConstraints { .. } => {
                 write!(f, "degenerate constraints: nothing lower was found, but no multipliers prove it")

@@ -22,6 +22,7 @@ STATUS = {
     "other": 12,
     "infeasible": 13,
     "degenerate_constraints": 14,
+    "violated": 15,
 }
 
 #: What to do next; for another reason, the engine advises.

@@ -14,6 +14,8 @@ const ROUNDING: f64 = 2e-15;
 const CONVEX_SHARE: f64 = 1e-9;
 /// Gradients of active constraints that cancel, or vanish, to this share are degenerate.
 const DEGENERATE: f64 = 1e-6;
+/// A gradient this many times shorter than that at a later center vanishes, and is no unit.
+const VANISHING: f64 = 1e-6;
 /// A penalty weight this many times larger than the multipliers ask for is lowered: it would reject steps along curved
 /// constraints.
 const MAX_PENALTY_SHARE: f64 = 20.0;
@@ -169,6 +171,12 @@ impl Constraints {
         self.last_step = norm.length(&(&*newest.point - &*self.center.point));
         let old = std::mem::replace(&mut self.center, newest);
         self.measure();
+        for (j, unit) in self.units.iter_mut().enumerate() {
+            let length = norm.dual_length(&self.center.evaluation.jacobian.row(j).transpose());
+            if *unit <= VANISHING * length {
+                *unit = length;
+            }
+        }
         self.caution = (0.1 * self.caution).max(1.0);
         let violation = self.center_violation();
         if self.penalty > MAX_PENALTY_SHARE * self.sensitivity && violation <= 0.5 * self.lowered_at {
@@ -330,9 +338,23 @@ impl Constraints {
         (0..self.kinds.len()).map(relative).fold(0.0, f64::max)
     }
 
+    /// The constraint whose violation at the center is largest in tolerances, and this violation.
+    pub(crate) fn worst(&self) -> (usize, f64) {
+        let Known { evaluation, point, .. } = &self.center;
+        let violation = |j: usize| self.kinds[j].violation(evaluation.values[j]);
+        let excess = |j: usize| violation(j) / self.tolerance(j, evaluation, point);
+        let worst = (0..self.kinds.len()).max_by(|&i, &j| excess(i).total_cmp(&excess(j))).unwrap_or_default();
+        (worst, violation(worst))
+    }
+
     /// v at the center.
     pub(crate) fn center_violation(&self) -> f64 {
         self.violation(&self.center.evaluation.values)
+    }
+
+    /// v at the newest point, or at the center where this is the newest.
+    pub(crate) fn newest_violation(&self) -> f64 {
+        self.violation(&self.newest.as_ref().unwrap_or(&self.center).evaluation.values)
     }
 
     /// The largest violation at the center in tolerances.
@@ -368,6 +390,21 @@ impl Constraints {
             length(&self.center, j) * distance <= DEGENERATE * change * reach
         };
         sum > slope / DEGENERATE || (0..multipliers.len()).any(|j| multipliers[j] != 0.0 && vanishes(j))
+    }
+
+    /// Gives ρ a unit where the subgradient of the objective at the start is 0: that of the first point at which it is
+    /// not, and as much as makes a step that reduces the violation a serious one. A constant objective has no unit; any
+    /// ρ will do.
+    pub(crate) fn learn_slope(&mut self, slope: f64, rise: f64, values: &Vector) {
+        let drop = self.center_violation() - self.violation(values);
+        self.objective_slope = slope;
+        self.penalty = self.penalty.max(slope);
+        if drop > 0.0 {
+            self.penalty = self.penalty.max(2.0 * rise / drop);
+            if self.penalty == 0.0 {
+                self.penalty = 1.0;
+            }
+        }
     }
 
     /// Raises ρ above the sum of multipliers Σ σ_j |μ_j| of a subproblem.

@@ -1,7 +1,7 @@
 //! Nonlinear constraints of a run: what has been seen of them, and the admissible set with their linearizations.
 //!
 //! ```text
-//! v(x) = max_j c_j(x)⁺/σ_j                 violation, σ_j = ‖∇c_j‖* at the first point where it is not 0
+//! v(x) = max_j c_j(x)⁺/σ_j                 violation, σ_j = ‖∇c_j‖* at the first point where it does not vanish
 //! P(x) = Θ(x) + ρ v(x)                     merit: decides between serious and null step; ρ exceeds Σ σ_j μ_j of all subproblems
 //! s  = min over d  max_i t_i(d)⁺ + κ‖d‖²/2,   x̂ + d ∈ U              what the linearizations t_i allow the violation to become
 //! set of the subproblems:  U ∩ { t_i(d) ≤ s }

@@ -3,7 +3,7 @@
 use crate::bundle::constrained::Tangent;
 use crate::bundle::cut::LEAST_ACTIVE_MULTIPLIER;
 use crate::bundle::state::BundleState;
-use crate::qp::{QpError, project};
+use crate::qp::{QpError, nearest};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
@@ -176,7 +176,7 @@ impl Proposal {
     /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the
     /// center, which is admissible.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
-        let sizes = state.norm.sizes(&state.center, state.norm.length(&self.step));
+        let sizes = state.norm.sizes(&state.center, &self.step);
         let violation = |x: &Vector| set.violation_near(x, &sizes);
         self.trial = set.clamp_to_box(&self.trial);
         self.violation = violation(&self.trial);
@@ -184,7 +184,7 @@ impl Proposal {
             if self.violation > FEASIBILITY { FEASIBILITY.max(violation(&state.center)) } else { FEASIBILITY };
         if self.violation > allowed
             && self.violation < LARGEST_PROJECTED_VIOLATION
-            && let Ok(projected) = project(set, &self.trial)
+            && let Ok(projected) = nearest(set, &self.trial)
             && violation(&projected) < self.violation
         {
             self.violation = violation(&projected);

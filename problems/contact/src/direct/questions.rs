@@ -8,8 +8,10 @@ use crate::direct::force_rounding::change_of_forces;
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::direct::tangents::{CondensedTangents, tangents};
 use crate::equilibrium::trace_work::TraceWork;
-use crate::equilibrium::{Diagnosis, Sensitivities, Stage, Tangents, TangentsOf, ValueError};
+use crate::equilibrium::{Diagnosis, Sensitivities, SolvedBody, Stage, Tangents, TangentsOf, ValueError};
 use crate::error::ContactError;
+use crate::shape::first_of;
+use std::sync::Arc;
 use std::time::Instant;
 
 impl DirectSolver {
@@ -121,6 +123,23 @@ impl DirectSolver {
         let parts = contact.bodies.iter().zip(self.problem.bodies.iter().zip(&state.positions));
         let delta = parts.map(|(own, (body, positions))| own.refinement(body, positions, &solution.forces));
         Ok(change_of_forces(contact, &solution.linearizations, &delta.collect::<Vec<_>>()))
+    }
+
+    /// All bodies of a solved shape, in the order of the scene. Nothing is torn: each body is one subdomain.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`] for a state of another mesh.
+    pub fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
+        self.check(state)?;
+        let bodies = self.problem.bodies.iter().enumerate();
+        let solved = bodies.map(|(number, body)| SolvedBody {
+            mesh: Arc::clone(&body.mesh),
+            positions: first_of(&state.positions[number], body.mesh.node_count()),
+            displacement: state.displacement(number).as_chunks::<3>().0.to_vec(),
+            gluing_defect: 0.0,
+            subdomains: vec![number; body.mesh.cell_count()],
+        });
+        Ok(solved.collect())
     }
 
     /// ∂J/∂u of all bodies as loads on them.

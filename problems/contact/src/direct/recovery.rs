@@ -1,30 +1,7 @@
 //! Displacements inside the condensed bodies.
 
-use crate::direct::solver::{DirectSolver, DirectState};
-use crate::equilibrium::SolvedBody;
-use crate::error::ContactError;
+use crate::direct::solver::DirectState;
 use crate::linear::vector::add_scaled;
-use crate::shape::first_of;
-use std::sync::Arc;
-
-impl DirectSolver {
-    /// All bodies of a solved shape, in the order of the scene. Nothing is torn: each body is one subdomain.
-    ///
-    /// # Errors
-    /// [`ContactError::ForeignState`] for a state of another mesh.
-    pub fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
-        self.check(state)?;
-        let bodies = self.problem.bodies.iter().enumerate();
-        let solved = bodies.map(|(number, body)| SolvedBody {
-            mesh: Arc::clone(&body.mesh),
-            positions: first_of(&state.positions[number], body.mesh.node_count()),
-            displacement: state.displacement(number).as_chunks::<3>().0.to_vec(),
-            gluing_defect: 0.0,
-            subdomains: vec![number; body.mesh.cell_count()],
-        });
-        Ok(solved.collect())
-    }
-}
 
 impl DirectState {
     /// Displacements over the dofs of a whole body of the state, along the axes. They are solved for when they are
