@@ -25,7 +25,7 @@ impl DirectState {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::direct::DirectSolver;
     use crate::equilibrium::ContactProblem;
     use crate::scene::hertz;
     use std::sync::Arc;
