@@ -29,3 +29,4 @@ mod restart;
 mod second_look;
 mod terminations;
 mod true_terminations;
+mod trusses;

@@ -213,7 +213,7 @@ impl Constraints {
         self.others.extend(kept);
     }
 
-    /// Drops linearizations: of nonconvex constraints those away from the center, then the oldest.
+    /// Drops linearizations: of smooth nonconvex constraints those away from the center, then the oldest.
     fn prune(&mut self, norm: &ScaledNorm) {
         let center = &self.center.point;
         for t in &self.others {
@@ -223,9 +223,10 @@ impl Constraints {
                 self.nonconvex[t.constraint] = true;
             }
         }
-        let near = 2.0 * self.last_step;
-        let (nonconvex, center) = (&self.nonconvex, Rc::clone(center));
-        self.others.retain(|t| !nonconvex[t.constraint] || norm.length(&(&*t.point - &*center)) <= near);
+        let (near, center) = (2.0 * self.last_step, Rc::clone(center));
+        let (nonconvex, kinds) = (&self.nonconvex, &self.kinds);
+        let stays = |t: &Tangent| kinds[t.constraint] == ConstraintKind::Nonsmooth || !nonconvex[t.constraint];
+        self.others.retain(|t| stays(t) || norm.length(&(&*t.point - &*center)) <= near);
         let most = EXTRA_TANGENTS + 3 * center.len();
         if self.others.len() > most {
             self.others.drain(..self.others.len() - most);

@@ -6,6 +6,7 @@ use crate::bundle::norm::ScaledNorm;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 use crate::qp::EpigraphQpSolver;
 use crate::{ConstraintKind, Matrix, Polyhedron, Vector};
+use std::borrow::Cow;
 use std::rc::Rc;
 
 /// Weight κ of the relaxation, times the violation: the linearized violation falls as long as it does so by a hundredth
@@ -45,7 +46,7 @@ pub(crate) struct WorkingSet {
 
 /// A linearization as seen from the center, in σ.
 struct Seen<'a> {
-    tangent: &'a Tangent,
+    tangent: Cow<'a, Tangent>,
     slope: Vector,
     level: f64,
     two_sided: bool,
@@ -84,7 +85,7 @@ impl WorkingSet {
         (norm, negligible, reach): (&ScaledNorm, f64, f64),
         solver: &mut EpigraphQpSolver,
     ) -> Self {
-        let mut seen = seen_from(constraints, center);
+        let mut seen = seen_from(constraints, center, norm);
         let (violation, excess) = (constraints.center_violation(), constraints.center_excess());
         let (mut relaxation, mut stationary, mut forced_length) = (violation, false, 0.0);
         let costly = constraints.sensitivity * violation > negligible;
@@ -111,7 +112,7 @@ impl WorkingSet {
         Self {
             set: extended,
             own_rows,
-            tangents: Rc::new(seen.iter().map(|seen| seen.tangent.clone()).collect()),
+            tangents: Rc::new(seen.iter().map(|seen| (*seen.tangent).clone()).collect()),
             units: (0..constraints.kinds().len()).map(|j| constraints.unit(j)).collect(),
             kinds: constraints.kinds().to_vec(),
             forced_length,
@@ -123,31 +124,55 @@ impl WorkingSet {
 }
 
 /// The linearizations that can matter, in σ. One at another point never lies above the constraint at the center.
-fn seen_from<'a>(constraints: &'a Constraints, center: &Vector) -> Vec<Seen<'a>> {
+fn seen_from<'a>(constraints: &'a Constraints, center: &Vector, norm: &ScaledNorm) -> Vec<Seen<'a>> {
     let (own, others) = constraints.tangents();
     let values = constraints.at_center();
-    let view = |tangent: &'a Tangent, level: f64| {
+    let view = |tangent: Cow<'a, Tangent>, level: f64| {
         let unit = constraints.unit(tangent.constraint);
         let two_sided = constraints.kinds()[tangent.constraint] == ConstraintKind::SmoothEquality;
         (unit > 0.0).then(|| Seen {
-            tangent,
             slope: &*tangent.slope / unit,
             level: level / unit,
             two_sided,
             holds: *tangent.point == *center
                 || constraints.kinds()[tangent.constraint] == ConstraintKind::Nonsmooth
                     && !constraints.nonconvex()[tangent.constraint],
+            tangent,
         })
     };
-    let of_center = own.iter().filter_map(|t| view(t, t.value));
+    let of_center = own.iter().filter_map(|t| view(Cow::Borrowed(t), t.value));
+    let curvatures = curvatures(constraints, center, norm);
     let of_others = others.iter().filter_map(|t| {
-        let value = values[t.constraint];
-        view(t, value - (value - t.at(center)).abs())
+        let (value, curvature) = (values[t.constraint], curvatures[t.constraint]);
+        let error = (value - t.at(center)).abs();
+        if curvature == 0.0 {
+            return view(Cow::Borrowed(t), value - error);
+        }
+        let away = &*t.point - center;
+        let level = value - error.max(curvature * norm.squared(&away));
+        let slope = &*t.slope + norm.lower_index(&away) * (2.0 * curvature);
+        let convexified = Tangent { value: level + slope.dot(&away), slope: Rc::new(slope), ..t.clone() };
+        view(Cow::Owned(convexified), level)
     });
     let mut seen: Vec<Seen<'_>> = of_center.collect();
     let steepest = seen.iter().map(|seen| seen.slope.amax()).fold(1.0, f64::max);
     seen.extend(of_others.filter(|seen| seen.slope.amax() <= MAX_RELATIVE_SLOPE * steepest));
     seen
+}
+
+/// The curvature κ with which c_j + κ‖x − x̂‖² lies above its linearizations at the center, for every nonsmooth constraint.
+fn curvatures(constraints: &Constraints, center: &Vector, norm: &ScaledNorm) -> Vec<f64> {
+    let mut curvatures = vec![0.0_f64; constraints.kinds().len()];
+    for t in constraints.tangents().1.iter().filter(|t| {
+        constraints.nonconvex()[t.constraint] && constraints.kinds()[t.constraint] == ConstraintKind::Nonsmooth
+    }) {
+        let above = t.at(center) - constraints.at_center()[t.constraint];
+        let squared = norm.squared(&(&*t.point - center));
+        if above > 0.0 && squared > 0.0 {
+            curvatures[t.constraint] = curvatures[t.constraint].max(above / squared);
+        }
+    }
+    curvatures
 }
 
 /// The violation s that a step may leave, and whether the violation is stationary.
