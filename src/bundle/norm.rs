@@ -12,10 +12,6 @@ use crate::qp::kernels::{weighted_squared_distance, weighted_squares};
 use crate::{InputError, Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
-/// Share of the length of a point and of a step that an entry must exceed to count among the terms of a row: rows are
-/// met to 1e-12 of their terms, and entries have errors of some 1e-15 of these lengths.
-const ROUNDED_SHARE: f64 = 1e-2;
-
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
@@ -161,13 +157,6 @@ impl ScaledNorm {
             Scale::Weights(weights) => 1.0 / weights[i].sqrt(),
             Scale::Linear(Coordinates { matrix, .. }) => matrix.row(i).norm(),
         }
-    }
-
-    /// Sizes of the variables for violations of rows at the end of a step from a point: its entries or, where these
-    /// happen to be near zero, a share of the lengths of point and step, below which an entry is rounding.
-    pub(crate) fn sizes(&self, point: &Vector, step: &Vector) -> Vector {
-        let length = self.length(point) + self.length(step);
-        Vector::from_fn(point.len(), |i, _| point[i].abs().max(ROUNDED_SHARE * length * self.unit(i)))
     }
 
     /// Whether W is the identity.

@@ -70,7 +70,7 @@ impl<'o> BundleTrust<'o> {
         check_size("constraints", dimension, set.dimension())?;
         let norm = ScaledNorm::new(&self.config.scaling, &set)?;
         let rows = IndependentRows::new(&set, |i| norm.unit(i));
-        let start = admissible_start(&set, &rows, &norm, x0)?;
+        let start = admissible_start(&set, &rows, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
         let (state, linearization) =
             first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, (&rows.set, norm), start)?;
@@ -108,12 +108,7 @@ impl<'o> BundleTrust<'o> {
 }
 
 /// Moves the start into the admissible set.
-fn admissible_start(
-    set: &Polyhedron,
-    rows: &IndependentRows,
-    norm: &ScaledNorm,
-    x0: Vector,
-) -> Result<Vector, OptimizeError> {
+fn admissible_start(set: &Polyhedron, rows: &IndependentRows, x0: Vector) -> Result<Vector, OptimizeError> {
     if rows.contradicts() {
         return Err(OptimizeError::Infeasible { violation: least_violation(set, &set.clamp_to_box(&x0)) });
     }
@@ -126,7 +121,7 @@ fn admissible_start(
         QpError::Infeasible { violation } => OptimizeError::Infeasible { violation },
         _ => OptimizeError::Infeasible { violation: before },
     })?;
-    let violation = set.violation_near(&projected, &norm.sizes(&x0, &(&projected - &x0)));
+    let violation = set.violation_near(&projected, &x0);
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 

@@ -119,10 +119,7 @@ impl Certificate {
             total += cut.multiplier;
             negative = negative.max(-cut.multiplier);
         }
-        let steps = self.cuts.iter().map(|cut| &self.point - &cut.point);
-        let longest = steps.max_by(|a, b| self.norm.squared(a).total_cmp(&self.norm.squared(b)));
-        let longest = longest.unwrap_or_else(|| Vector::zeros(self.point.len()));
-        let mut violation = set.violation_near(&self.point, &self.norm.sizes(&self.point, &longest));
+        let mut violation = set.violation(&self.point);
         if let Some(constraints) = &self.constraints {
             let (slopes, slack, wrong_sign) = constraints.sums(&self.point)?;
             aggregate += slopes;
