@@ -8,15 +8,6 @@
 use crate::checks::{check_finite, check_intervals, check_size};
 use crate::{InputError, Matrix, Vector};
 
-/// Relative violation of a row that is met.
-const MET: f64 = 1e-12;
-/// Terms of a row that are this small beside what equality rows couple their variables with are rounding.
-const VANISHING: f64 = 1e-12;
-/// Violation of such a row, beside the same, that is rounding as well.
-const ROUNDING: f64 = 1e-14;
-/// Sweeps in which equality rows pass sizes on.
-const COUPLING_SWEEPS: usize = 3;
-
 /// A polyhedron given by bounds and two-sided rows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(try_from = "Stored", into = "Stored")]
@@ -193,14 +184,6 @@ impl Polyhedron {
     /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point
     /// whose entries happen to be near zero then does not depend on its rounding errors.
     pub(crate) fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
-        let plain = self.largest_violation(x, reference, None);
-        // Few points come here; sizes that rows pass on cost as much as some violations.
-        if plain <= MET { plain } else { self.largest_violation(x, reference, Some(&self.coupled_sizes(x, reference))) }
-    }
-
-    /// `coupled`: what the entries of the variables are rounding of. A row all of whose terms are rounding of these is
-    /// met where its violation is.
-    fn largest_violation(&self, x: &Vector, reference: &Vector, coupled: Option<&Vector>) -> f64 {
         let mut worst: f64 = 0.0;
         let sides = self.lower.as_slice().iter().zip(self.upper.as_slice());
         // Nearly all entries lie within their sides: a test without a maximum passes over them fast. NaN lies within
@@ -211,50 +194,30 @@ impl Polyhedron {
         {
             worst = worst.max(side_violation(*x, lower, upper, x.abs().max(reference.abs())));
         }
-        for (i, row) in self.rows.row_iter().enumerate() {
-            let (mut value, mut scale, mut coupling) = (0.0, 0.0, 0.0);
-            for (k, (a, (x, y))) in row.iter().zip(x.iter().zip(reference.iter())).enumerate() {
-                value += a * x;
-                scale += (a * x).abs().max((a * y).abs());
-                coupling += coupled.map_or(0.0, |sizes| a.abs() * sizes[k]);
-            }
-            let (lower, upper) = (self.row_lower[i], self.row_upper[i]);
-            let side = if value < lower { lower } else { upper };
-            let vanishes = scale.max(side.abs()) <= VANISHING * coupling;
-            if !(vanishes && (value - side).abs() <= ROUNDING * coupling) {
-                worst = worst.max(side_violation(value, lower, upper, scale));
-            }
+        (0..self.rows.nrows()).map(|i| self.row_violation(i, x, reference)).fold(worst, f64::max)
+    }
+
+    fn row_violation(&self, i: usize, x: &Vector, reference: &Vector) -> f64 {
+        let (mut value, mut scale) = (0.0, 0.0);
+        for (a, (x, y)) in self.rows.row(i).iter().zip(x.iter().zip(reference.iter())) {
+            value += a * x;
+            scale += (a * x).abs().max((a * y).abs());
         }
-        worst
+        side_violation(value, self.row_lower[i], self.row_upper[i], scale)
     }
 
-    /// The rows that a point violates by more than a share of their terms, each the larger of its sizes at both points.
-    pub(crate) fn violated_rows(&self, x: &Vector, reference: &Vector, share: f64) -> Vec<usize> {
-        let is_violated = |i: &usize| {
-            let (row, mut value, mut scale) = (self.rows.row(*i), 0.0, 0.0);
-            for (a, (x, y)) in row.iter().zip(x.iter().zip(reference.iter())) {
-                value += a * x;
-                scale += (a * x).abs().max((a * y).abs());
-            }
-            side_violation(value, self.row_lower[*i], self.row_upper[*i], scale) > share
-        };
-        (0..self.rows.nrows()).filter(is_violated).collect()
-    }
-
-    /// Sizes of the variables at two points, where equality rows pass the size of a term on to all variables of the
-    /// row. They change with the units of variables as the variables do.
-    fn coupled_sizes(&self, x: &Vector, reference: &Vector) -> Vector {
-        let mut sizes = x.zip_map(reference, |x, y| x.abs().max(y.abs()));
-        let equalities = || (0..self.rows.nrows()).filter(|&i| self.row_lower[i] == self.row_upper[i]);
-        for _ in 0..COUPLING_SWEEPS {
-            for row in equalities().map(|i| self.rows.row(i)) {
-                let term = row.iter().zip(sizes.iter()).map(|(a, size)| (a * size).abs()).fold(0.0, f64::max);
-                for (size, a) in sizes.iter_mut().zip(row.iter()).filter(|(_, a)| **a != 0.0) {
-                    *size = size.max(term / a.abs());
+    /// A point of the box with the variables of violated rows back where they come from, where they have moved by no
+    /// more than rounding of the whole step: rows whose terms are all zero there are met nowhere else.
+    pub(crate) fn with_still_rows(&self, x: &Vector, from: &Vector, rounding: impl Fn(usize) -> f64) -> Vector {
+        let mut still = x.clone();
+        for i in (0..self.rows.nrows()).filter(|&i| self.row_violation(i, x, from) > 0.0) {
+            for (k, _) in self.rows.row(i).iter().enumerate().filter(|(_, a)| **a != 0.0) {
+                if (x[k] - from[k]).abs() <= rounding(k) {
+                    still[k] = from[k];
                 }
             }
         }
-        sizes
+        self.clamp_to_box(&still)
     }
 
     /// x with every entry moved into its box.

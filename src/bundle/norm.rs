@@ -12,6 +12,9 @@ use crate::qp::kernels::{weighted_squared_distance, weighted_squares};
 use crate::{InputError, Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
+/// Moves of a variable up to this share of the length of a step may be its rounding.
+const ROUNDED_MOVE: f64 = 1e-12;
+
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
@@ -157,6 +160,11 @@ impl ScaledNorm {
             Scale::Weights(weights) => 1.0 / weights[i].sqrt(),
             Scale::Linear(Coordinates { matrix, .. }) => matrix.row(i).norm(),
         }
+    }
+
+    /// Move of a variable that may be rounding of a step.
+    pub(crate) fn rounded_move(&self, step: &Vector, i: usize) -> f64 {
+        ROUNDED_MOVE * self.length(step) * self.unit(i)
     }
 
     /// Whether W is the identity.

@@ -55,8 +55,6 @@ pub(crate) struct Proposal {
 pub(crate) const FEASIBILITY: f64 = 1e-12;
 /// A relative violation below this is rounding that a projection removes; a larger one shortens the step.
 const LARGEST_PROJECTED_VIOLATION: f64 = 1e-6;
-/// Moves of a variable up to this share of the length of a step may be its rounding.
-const ROUNDED_MOVE: f64 = 1e-12;
 /// A step is shortened to no less than this share.
 const SHORTEST_SHARE: f64 = 1e-3;
 /// A step is shortened by at most this share of itself at a time.
@@ -175,21 +173,6 @@ impl Proposal {
         Self { trial, step, violation: 0.0, ..self.clone() }.admissible(set, state)
     }
 
-    /// The trial point with the variables of violated rows back at the center where they have moved by rounding of the
-    /// step alone: rows whose terms are all zero there are met at the center only.
-    fn with_still_rows(&self, set: &Polyhedron, state: &BundleState) -> Vector {
-        let mut trial = self.trial.clone();
-        let least = ROUNDED_MOVE * state.norm.length(&self.step);
-        for row in set.violated_rows(&self.trial, &state.center, FEASIBILITY) {
-            for (k, _) in set.rows().row(row).iter().enumerate().filter(|(_, a)| **a != 0.0) {
-                if (trial[k] - state.center[k]).abs() <= least * state.norm.unit(k) {
-                    trial[k] = state.center[k];
-                }
-            }
-        }
-        trial
-    }
-
     /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the
     /// center, which is admissible.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
@@ -207,7 +190,7 @@ impl Proposal {
             self.trial = projected;
         }
         if self.violation > allowed {
-            let still = set.clamp_to_box(&self.with_still_rows(set, state));
+            let still = set.with_still_rows(&self.trial, &state.center, |k| state.norm.rounded_move(&self.step, k));
             if violation(&still) <= allowed {
                 (self.violation, self.trial) = (violation(&still), still);
             }
