@@ -6,7 +6,7 @@ use super::evidence::active_cuts;
 use super::oracle::OracleResult;
 use super::proof::Proof;
 use super::proposers::proposal::Proposal;
-use super::run::Run;
+use super::run::{Run, without_pattern};
 use crate::report::{Certificate, ConstraintCut, ConstraintProof, Report, Termination};
 use crate::{Accuracy, Vector};
 
@@ -95,7 +95,7 @@ impl Run<'_, '_> {
         if !twice && !vanishes(&self.state.seen.steepest) {
             return false;
         }
-        let direction = Vector::from_fn(center.len(), |i, _| (1.7 * i as f64 + 0.5).cos());
+        let direction = Vector::from_fn(center.len(), |i, _| without_pattern(i));
         let direction = &direction * (self.state.first_step / self.state.norm.length(&direction));
         let set = self.rows.set.clone();
         let points = [direction.clone(), -direction].into_iter().map(|step| set.clamp_to_box(&(&center + step)));

@@ -162,9 +162,10 @@ impl ScaledNorm {
         }
     }
 
-    /// Move of a variable that may be rounding of a step.
-    pub(crate) fn rounded_move(&self, step: &Vector, i: usize) -> f64 {
-        ROUNDED_MOVE * self.length(step) * self.unit(i)
+    /// Moves of the variables that may be rounding of a step.
+    pub(crate) fn rounded_moves(&self, step: &Vector) -> Vector {
+        let share = ROUNDED_MOVE * self.length(step);
+        Vector::from_fn(step.len(), |i, _| share * self.unit(i))
     }
 
     /// Whether W is the identity.

@@ -128,8 +128,10 @@ impl Run<'_, '_> {
                 let mut evaluation = answer.into_evaluation();
                 let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
                 self.learn_slope(&evaluation);
+                let (known_before, found) = (&self.state.constraints, &evaluation.constraints);
+                let left = known_before.as_ref().zip(found.as_ref()).map(|(own, found)| own.violation(&found.values));
                 self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, false);
-                let kind = if self.state.newest_violation() <= LESS_VIOLATED * violation {
+                let kind = if left.is_some_and(|left| left <= LESS_VIOLATED * violation) {
                     self.state.move_center(accuracy);
                     self.oracle.keep_warm_start();
                     self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
@@ -150,7 +152,7 @@ impl Run<'_, '_> {
         let (state, n) = (&self.state, self.state.center.len());
         let tried = if self.ways_out.0 == state.center_id { self.ways_out.1 } else { 0 };
         let objective = state.bundle.cut(state.center_id).map(|cut| -state.norm.raise_index(&cut.subgradient));
-        let aside = Vector::from_fn(n, |i, _| (1.7 * i as f64 + 0.5).cos() * state.norm.unit(i));
+        let aside = Vector::from_fn(n, |i, _| without_pattern(i) * state.norm.unit(i));
         let ways = [objective.unwrap_or_else(|| Vector::zeros(n)), aside.clone(), -aside];
         ways.into_iter().enumerate().skip(tried).find_map(|(number, way)| {
             let length = state.norm.length(&way);
@@ -218,7 +220,7 @@ impl Run<'_, '_> {
         let sum: f64 = proposal.row_multipliers.iter().skip(working.own_rows).map(|m| m.abs()).sum();
         // Where the violation forces a long step, its length drives the multipliers, in proportion to the weight.
         let slope = constraints.objective_slope;
-        constraints.raise_penalty(sum * slope / (slope + proposal.aggregate_norm));
+        constraints.raise_penalty(if slope > 0.0 { sum * slope / (slope + proposal.aggregate_norm) } else { 0.0 });
         if working.restoring() {
             // Far cuts of a nonconvex objective say nothing about what the violation is worth: the center's own does.
             let center = self.state.bundle.cut(self.state.center_id);
@@ -286,8 +288,8 @@ impl Run<'_, '_> {
         self.state.longest_step = None;
         if accurate {
             noise::watch(&mut self.state, self.method.config.convexity, proposal, &evaluation);
+            self.learn_slope(&evaluation);
         }
-        self.learn_slope(&evaluation);
         let trial = Trial::new(&self.state, proposal, (&evaluation, accurate), known.as_ref());
         self.ask(|proposers, at| proposers.learn(at, &trial));
         self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, !accurate);
@@ -307,12 +309,12 @@ impl Run<'_, '_> {
         record(&mut self.state, proposal, accuracy, event, self.clock);
     }
 
-    /// Takes the first subgradient of the objective that is not 0 as the unit of weights and penalty, where that of an
-    /// infeasible start is.
+    /// Takes the first subgradient of the objective that is not 0 as the unit of weights and penalty, where that of the
+    /// start is 0.
     fn learn_slope(&mut self, evaluation: &Evaluation<()>) {
         let state = &mut self.state;
         let (Some(constraints), Some(found)) = (&mut state.constraints, &evaluation.constraints) else { return };
-        if constraints.objective_slope > 0.0 || constraints.center_excess() <= 1.0 {
+        if constraints.objective_slope > 0.0 {
             return;
         }
         let slope = state.norm.dual_length(&evaluation.subgradient);
@@ -414,6 +416,11 @@ impl Run<'_, '_> {
     pub fn history(&self) -> &[IterationRecord] {
         &self.state.history
     }
+}
+
+/// Entry i of a direction without pattern.
+pub(super) fn without_pattern(i: usize) -> f64 {
+    (1.7 * i as f64 + 0.5).cos()
 }
 
 /// Whether the violation of the constraints, rather than the objective, determines the length of a step.

@@ -16,7 +16,7 @@ use super::state::BundleState;
 use super::verdict;
 use crate::checks::check_size;
 use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
-use crate::qp::{EpigraphQpSolver, IndependentRows, QpError, is_only_point, least_violation, nearest};
+use crate::qp::{EpigraphQpSolver, IndependentRows, QpError, is_only_point, nearest};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
     Accuracy, ConstraintKind, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron,
@@ -114,24 +114,21 @@ fn admissible_start(
     norm: &ScaledNorm,
     x0: Vector,
 ) -> Result<Vector, OptimizeError> {
-    if rows.contradicts() {
-        return Err(OptimizeError::Infeasible { violation: least_violation(set, &set.clamp_to_box(&x0)) });
-    }
-    let set = &rows.set;
     let before = set.violation(&x0);
-    if before <= FEASIBILITY {
-        return Ok(set.clamp_to_box(&x0));
-    }
-    let projected = nearest(set, &x0).map_err(|error| match error {
+    let refused = |error| match error {
         QpError::Infeasible { violation } => OptimizeError::Infeasible { violation },
         _ => OptimizeError::Infeasible { violation: before },
-    })?;
+    };
+    let set = rows.consistent(set, &x0).map_err(refused)?;
+    if set.violation(&x0) <= FEASIBILITY {
+        return Ok(set.clamp_to_box(&x0));
+    }
+    let projected = nearest(set, &x0).map_err(refused)?;
     let violation = set.violation_near(&projected, &x0);
     if violation <= MAX_START_VIOLATION {
         return Ok(projected);
     }
-    let step = &projected - &x0;
-    let still = set.with_still_rows(&projected, &x0, |k| norm.rounded_move(&step, k));
+    let still = set.with_still_rows(&projected, &x0, &norm.rounded_moves(&(&projected - &x0)));
     if set.violation_near(&still, &x0) <= MAX_START_VIOLATION {
         Ok(still)
     } else {

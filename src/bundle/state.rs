@@ -212,11 +212,6 @@ impl BundleState {
         self.constraints.as_ref().map_or(0.0, |constraints| constraints.center_violation())
     }
 
-    /// v at the newest point.
-    pub(crate) fn newest_violation(&self) -> f64 {
-        self.constraints.as_ref().map_or(0.0, |constraints| constraints.newest_violation())
-    }
-
     /// Whether the center satisfies the nonlinear constraints.
     pub(crate) fn is_feasible(&self) -> bool {
         self.constraints.as_ref().is_none_or(|constraints| constraints.center_excess() <= 1.0)

@@ -8,6 +8,8 @@
 //! Gram–Schmidt with row pivoting, twice for every row that is taken.
 
 use super::kernels::{add_scaled, dot, norm};
+use super::least_violation::least_violation;
+use super::problem::QpError;
 use crate::{Matrix, Polyhedron, Vector};
 
 /// Remainder of a row of length 1 that is rounding: the row depends on others.
@@ -51,7 +53,7 @@ impl IndependentRows {
             return whole;
         }
         let mut rows: Vec<Row> = equalities.into_iter().map(|number| Row::new(set, number, &sizes)).collect();
-        let (mut taken, mut directions) = (Vec::new(), Vec::<(Vec<f64>, f64, f64)>::new());
+        let mut directions: Vec<(Vec<f64>, f64, f64)> = Vec::new();
         while let Some(place) = largest(&rows) {
             let mut row = rows.swap_remove(place);
             for (direction, side, size) in &directions {
@@ -61,7 +63,6 @@ impl IndependentRows {
             row.rest.iter_mut().for_each(|entry| *entry /= length);
             let (side, size) = (row.side / length, row.size / length);
             rows.iter_mut().for_each(|other| other.reduce(&row.rest, side, size));
-            taken.push(row.number);
             directions.push((row.rest, side, size));
         }
         if rows.is_empty() {
@@ -74,9 +75,18 @@ impl IndependentRows {
         Self { set: set.with_rows_kept(&kept), kept, count: whole.count, contradiction }
     }
 
-    /// Whether a row contradicts others by more than rounding, so that the set is empty.
-    pub(crate) fn contradicts(&self) -> bool {
-        self.contradiction.is_some_and(|(_, by)| by > ROUNDING)
+    /// The set, unless a row contradicts others by more than rounding; `whole`: with all rows, `x`: where the search
+    /// for the least violation begins.
+    ///
+    /// # Errors
+    /// [`QpError::Infeasible`].
+    pub(crate) fn consistent(&self, whole: &Polyhedron, x: &Vector) -> Result<&Polyhedron, QpError> {
+        match self.contradiction {
+            Some((_, by)) if by > ROUNDING => {
+                Err(QpError::Infeasible { violation: least_violation(whole, &whole.clamp_to_box(x)) })
+            }
+            _ => Ok(&self.set),
+        }
     }
 
     /// Multipliers of all rows from those of the rows that are kept: 0 for the others.
@@ -151,8 +161,10 @@ mod tests {
         for unit in [1e-6, 1.0, 1e6] {
             let rows = [unit, unit, 2.0 * unit, 2.0 * unit];
             for (gap, contradicts) in [(1e-16, false), (1e-11, false), (1e-7, true), (1.0, true)] {
-                let found = IndependentRows::new(&set(&rows, &[unit, 2.0 * unit * (1.0 + gap)]), |_| 1.0);
-                assert_eq!((found.set.rows().nrows(), found.contradicts()), (1, contradicts), "{unit:e} {gap:e}");
+                let whole = set(&rows, &[unit, 2.0 * unit * (1.0 + gap)]);
+                let found = IndependentRows::new(&whole, |_| 1.0);
+                let refused = found.consistent(&whole, &Vector::zeros(2)).is_err();
+                assert_eq!((found.set.rows().nrows(), refused), (1, contradicts), "{unit:e} {gap:e}");
                 assert_eq!(found.contradiction.is_some(), gap > 1e-13, "{unit:e} {gap:e}");
             }
         }
@@ -168,7 +180,9 @@ mod tests {
                 })
                 .expect("valid set")
         };
-        assert!(!IndependentRows::new(&fixed(0.5), |_| 1.0).contradicts());
-        assert!(IndependentRows::new(&fixed(0.6), |_| 1.0).contradicts());
+        for (value, is_empty) in [(0.5, false), (0.6, true)] {
+            let set = fixed(value);
+            assert_eq!(IndependentRows::new(&set, |_| 1.0).consistent(&set, &Vector::zeros(2)).is_err(), is_empty);
+        }
     }
 }

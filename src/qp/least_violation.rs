@@ -17,7 +17,7 @@ const WEIGHT: f64 = 1e-3;
 
 /// The least relative violation found among the points of the box, from one of them on. It is that of a point, hence an
 /// upper bound of the least one.
-pub(crate) fn least_violation(set: &Polyhedron, start: &Vector) -> f64 {
+pub(super) fn least_violation(set: &Polyhedron, start: &Vector) -> f64 {
     let mut point = start.clone();
     let mut least = set.violation(&point);
     for _ in 0..MAX_STEPS {

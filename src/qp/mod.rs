@@ -40,7 +40,6 @@ mod working_set;
 pub use certificate::kkt_residual;
 pub(crate) use gram::Gram;
 pub(crate) use independent_rows::IndependentRows;
-pub(crate) use least_violation::least_violation;
 pub use problem::{EpigraphQp, Metric, QpCounts, QpError, QpMethod, QpSolution};
 pub use projection::project;
 pub(crate) use projection::{is_only_point, nearest};

@@ -27,11 +27,7 @@ use crate::{InputError, Polyhedron, Vector};
 /// ```
 pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     InputError::check_vector("point", set.dimension(), x)?;
-    let rows = IndependentRows::new(set, |_| 1.0);
-    if rows.contradicts() {
-        return Err(QpError::Infeasible { violation: least_violation(set, &set.clamp_to_box(x)) });
-    }
-    nearest(&rows.set, x)
+    nearest(IndependentRows::new(set, |_| 1.0).consistent(set, x)?, x)
 }
 
 /// As [`project`], onto a set whose equality rows are independent.

@@ -353,11 +353,6 @@ impl Constraints {
         self.violation(&self.center.evaluation.values)
     }
 
-    /// v at the newest point, or at the center where this is the newest.
-    pub(crate) fn newest_violation(&self) -> f64 {
-        self.violation(&self.newest.as_ref().unwrap_or(&self.center).evaluation.values)
-    }
-
     /// The largest violation at the center in tolerances.
     pub(crate) fn center_excess(&self) -> f64 {
         self.excess(&self.center.evaluation, &self.center.point)

@@ -6,7 +6,7 @@
 //! s  = min over d  max_i t_i(d)⁺ + κ‖d‖²/2,   x̂ + d ∈ U              what the linearizations t_i allow the violation to become
 //! set of the subproblems:  U ∩ { t_i(d) ≤ s }
 //! ```
-//! A linearization of a nonsmooth constraint is a cut of it; where the constraint is not convex, of c_j + κ‖x − x̂‖².
+//! A linearization of a nonsmooth constraint is a cut of it; where the constraint is not convex, of c_j + γ‖x − x̂‖².
 //! All proposers see the constraints as rows of the admissible set, so that a subproblem gives their multipliers, and a
 //! proof of stationarity holds with them.
 //! References: \[Kiwiel1990\] for cuts, \[ByrdNocedalWaltz2008\] for the relaxation and the choice of ρ.

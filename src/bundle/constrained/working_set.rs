@@ -160,7 +160,7 @@ fn seen_from<'a>(constraints: &'a Constraints, center: &Vector, norm: &ScaledNor
     seen
 }
 
-/// The curvature κ with which c_j + κ‖x − x̂‖² lies above its linearizations at the center, for every nonsmooth
+/// The curvature γ with which c_j + γ‖x − x̂‖² lies above its linearizations at the center, for every nonsmooth
 /// constraint.
 fn curvatures(constraints: &Constraints, center: &Vector, norm: &ScaledNorm) -> Vec<f64> {
     let mut curvatures = vec![0.0_f64; constraints.kinds().len()];

@@ -190,7 +190,7 @@ impl Proposal {
             self.trial = projected;
         }
         if self.violation > allowed {
-            let still = set.with_still_rows(&self.trial, &state.center, |k| state.norm.rounded_move(&self.step, k));
+            let still = set.with_still_rows(&self.trial, &state.center, &state.norm.rounded_moves(&self.step));
             if violation(&still) <= allowed {
                 (self.violation, self.trial) = (violation(&still), still);
             }
