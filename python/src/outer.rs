@@ -115,8 +115,8 @@ impl OuterFunction for Outer {
         self.inner().curvature(outputs, jacobian)
     }
 
-    fn epigraph(&self) -> Option<Epigraph> {
-        self.inner().epigraph()
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        self.inner().epigraph(outputs)
     }
 
     fn is_homogeneous(&self) -> bool {

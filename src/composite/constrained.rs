@@ -1,6 +1,6 @@
 //! Outputs that are constraints: an outer function of the first outputs, with the last ones as constraints.
 
-use super::epigraph::Epigraph;
+use super::epigraph::{ConeFunction, Epigraph};
 use super::outer::{OuterFunction, OuterPart};
 use crate::nonlinear::OutputPiece;
 use crate::{ConstraintKind, Matrix, Vector};
@@ -71,9 +71,11 @@ impl<H: OuterFunction> OuterFunction for WithConstraints<H> {
         self.outer.parts_curvature(&self.outputs(outputs), &jacobian.rows(0, own).into_owned(), weights)
     }
 
-    /// None: the cones of h know nothing of the other outputs, so that the subproblem is solved by cuts.
-    fn epigraph(&self) -> Option<Epigraph> {
-        None
+    /// The constraints' outputs count nothing in h.
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        let limits = self.kinds.len();
+        let of_outer = self.outer.epigraph(outputs.checked_sub(limits)?)?;
+        Some(of_outer.and(ConeFunction::Linear, 0.0, limits))
     }
 
     fn constraint_kinds(&self) -> &[ConstraintKind] {

@@ -21,7 +21,7 @@ mod sum;
 
 pub use crate::nonlinear::OutputPiece;
 pub use constrained::WithConstraints;
-pub use epigraph::Epigraph;
+pub use epigraph::{ConeFunction, Epigraph, EpigraphTerm};
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
 pub use outer::{
     EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, OuterPart, PositiveParts, SumOfPowers, weighted_gram,

@@ -1,6 +1,6 @@
 //! Convex functions of the outputs.
 
-use super::epigraph::Epigraph;
+use super::epigraph::{ConeFunction, Epigraph};
 use crate::nonlinear::OutputPiece;
 use crate::{ConstraintKind, Matrix, Vector};
 
@@ -40,10 +40,10 @@ pub trait OuterFunction {
         None
     }
 
-    /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is
-    /// then solved by an interior-point method (feature `interior-point`; by cuts without it), and errors of
-    /// subgradients are taken from the conjugate h*.
-    fn epigraph(&self) -> Option<Epigraph> {
+    /// The cones that the epigraph of h of so many outputs is built from, if there are any: where h has no curvature,
+    /// the subproblem is then solved by an interior-point method (feature `interior-point`; by cuts without it), and
+    /// errors of subgradients are taken from the conjugate h*.
+    fn epigraph(&self, _outputs: usize) -> Option<Epigraph> {
         None
     }
 
@@ -85,8 +85,8 @@ impl<H: OuterFunction + ?Sized> OuterFunction for &H {
         (**self).parts_curvature(outputs, jacobian, weights)
     }
 
-    fn epigraph(&self) -> Option<Epigraph> {
-        (**self).epigraph()
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        (**self).epigraph(outputs)
     }
 
     fn constraint_kinds(&self) -> &[ConstraintKind] {
@@ -122,6 +122,10 @@ impl OuterFunction for Maximum {
         Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == first)))
     }
 
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        Some(Epigraph::of(ConeFunction::Largest, outputs))
+    }
+
     fn is_homogeneous(&self) -> bool {
         true
     }
@@ -151,9 +155,13 @@ impl OuterFunction for SumOfPowers {
     }
 
     /// None below p = 1, where h is not convex.
-    fn epigraph(&self) -> Option<Epigraph> {
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        let function = match self.exponent {
+            1.0 => ConeFunction::AbsoluteValues,
+            exponent => ConeFunction::Powers { exponent },
+        };
         let convex = self.exponent >= 1.0 && self.exponent.is_finite();
-        convex.then_some(Epigraph::SumOfPowers { exponent: self.exponent })
+        convex.then(|| Epigraph::of(function, outputs))
     }
 
     fn is_homogeneous(&self) -> bool {
@@ -175,8 +183,8 @@ impl OuterFunction for EuclideanNorm {
         if size > 0.0 { outputs / size } else { Vector::zeros(outputs.len()) }
     }
 
-    fn epigraph(&self) -> Option<Epigraph> {
-        Some(Epigraph::EuclideanNorm)
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        Some(Epigraph::of(ConeFunction::Norm, outputs))
     }
 
     fn is_homogeneous(&self) -> bool {
@@ -196,6 +204,10 @@ impl OuterFunction for PositiveParts {
 
     fn subgradient(&self, outputs: &Vector) -> Vector {
         outputs.map(|output| if output <= 0.0 { 0.0 } else { 1.0 })
+    }
+
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        Some(Epigraph::of(ConeFunction::PositiveParts, outputs))
     }
 
     fn is_homogeneous(&self) -> bool {
@@ -246,6 +258,12 @@ impl OuterFunction for GroupNorms {
             }
         }
         subgradient
+    }
+
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        let nothing = Epigraph::of(ConeFunction::Linear, 0);
+        let of_groups = |sum: Epigraph, &size: &usize| sum.and(ConeFunction::Norm, 1.0, size);
+        (self.sizes.iter().sum::<usize>() == outputs).then(|| self.sizes.iter().fold(nothing, of_groups))
     }
 
     fn is_homogeneous(&self) -> bool {

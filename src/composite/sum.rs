@@ -4,9 +4,9 @@
 //! Θ(x) = s(x) + μ h(c(x)),    outputs (s, c_1, …, c_m),    outer function (s, c) ↦ s + μ h(c)
 //! ```
 //! The smooth part is an output like the others: the model linearizes it, and learns its curvature from gradients at
-//! other points once steps fail without it.
+//! other points once steps fail without it. Where h is built from cones, so is the sum.
 
-use super::OuterFunction;
+use super::{Epigraph, OuterFunction};
 use crate::{Matrix, Vector};
 
 /// (s, c) ↦ s + μ h(c): the value of a smooth function is the first output, those of h follow.
@@ -56,6 +56,11 @@ impl<H: OuterFunction> OuterFunction for SmoothPlus<H> {
 
     fn subgradient(&self, outputs: &Vector) -> Vector {
         (self.outer.subgradient(&others(outputs)) * self.weight).insert_row(0, 1.0)
+    }
+
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        let of_others = self.outer.epigraph(outputs.checked_sub(1)?)?;
+        (self.weight > 0.0).then(|| of_others.after_linear(self.weight))
     }
 
     fn is_homogeneous(&self) -> bool {

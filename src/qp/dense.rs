@@ -54,7 +54,24 @@ impl Cholesky {
 
     /// Solves L Y = B in place.
     pub(super) fn halfway(&self, rhs: &mut Matrix) {
-        self.lower.solve_lower_triangular_mut(rhs);
+        let (n, count) = rhs.shape();
+        for first in (0..n).step_by(BLOCK) {
+            let width = BLOCK.min(n - first);
+            let next = first + width;
+            let mut block = rhs.rows(first, width).into_owned();
+            self.lower.view((first, first), (width, width)).solve_lower_triangular_mut(&mut block);
+            rhs.rows_mut(first, width).copy_from(&block);
+            let left = self.lower.view((next, first), (n - next, width));
+            rhs.view_mut((next, 0), (n - next, count)).gemm(-1.0, &left, &block, 1.0);
+        }
+    }
+
+    /// The factor of B (L Lᵀ)⁻¹ Bᵀ for the rows of B as columns; none where nobody waits for it any more.
+    pub(super) fn schur(&self, mut columns: Matrix) -> Option<Self> {
+        self.halfway(&mut columns);
+        let mut sum = Matrix::zeros(columns.ncols(), columns.ncols());
+        add_product(&mut sum, &columns.transpose(), &columns)?;
+        Some(Self::new(sum))
     }
 
     /// Solves L Lᵀ x = b.

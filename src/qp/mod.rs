@@ -28,10 +28,16 @@ mod independent_rows;
 pub(crate) mod interior_point;
 pub(crate) mod kernels;
 mod least_violation;
+#[cfg(feature = "interior-point")]
+mod outer_products;
+#[cfg(feature = "interior-point")]
+mod polish;
 mod pricing;
 #[cfg(feature = "interior-point")]
 pub(crate) mod primal_dual;
 mod problem;
+#[cfg(feature = "interior-point")]
+pub(crate) mod program;
 mod projection;
 mod solver;
 mod triangular;

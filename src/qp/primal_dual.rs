@@ -8,8 +8,10 @@
 //! The epigraph variables t leave the system in closed form, so that a step costs one product of dense matrices and one
 //! Cholesky factor of the size of x. Reference: \[Mehrotra1992\] (predictor and corrector).
 
-use super::dense::{Cholesky, add_product};
-use super::interior_point::ScaledSide;
+use super::dense::Cholesky;
+use super::outer_products::OuterProducts;
+use super::polish::{Guess, polish};
+use super::program::{PrimalDual, Program};
 use crate::interruption::interrupted;
 use crate::{Matrix, Vector};
 
@@ -27,30 +29,6 @@ const MAX_STALLED_BY_ROUNDING: usize = 2;
 /// Share of the way to the boundary that a step goes.
 const SHARE: f64 = 0.995;
 
-/// The data, in units in which they are of order one.
-pub(crate) struct Program<'a> {
-    /// c, m entries.
-    pub outputs: &'a Vector,
-    /// The rows g_i, m × n.
-    pub jacobian: &'a Matrix,
-    /// H, n × n.
-    pub quadratic: &'a Matrix,
-    /// p, n entries.
-    pub linear: &'a Vector,
-    /// Sides of the constraints, equalities first.
-    pub sides: &'a [ScaledSide],
-    pub equalities: usize,
-}
-
-/// The iterate of smallest residual.
-pub(crate) struct PrimalDual {
-    pub x: Vector,
-    /// The weights of the outputs, in [−1, 1] up to rounding.
-    pub weights: Vector,
-    /// One multiplier per side.
-    pub multipliers: Vec<f64>,
-}
-
 /// The constraints as the method sees them. Slacks and multipliers are in the order: upper sides of
 /// the absolute values, lower ones, inequalities.
 struct Constraints<'a> {
@@ -59,6 +37,7 @@ struct Constraints<'a> {
     rows: Matrix,
     /// Transpose of `rows`.
     columns: Matrix,
+    products: OuterProducts,
     /// Inequalities, those of more than one entry first, as positions in the list of sides.
     order: Vec<usize>,
     /// How many of them have more than one entry.
@@ -128,7 +107,9 @@ fn solve_counted(program: &Program<'_>) -> Option<(PrimalDual, usize)> {
         images.axpy(length, &change, 1.0);
         steps += 1;
     }
-    best.map(|(_, point)| (constraints.answer(point), steps))
+    let (_, point) = best?;
+    let guess = constraints.guess(&point);
+    Some((polish(program, constraints.answer(point), &guess)?, steps))
 }
 
 impl<'a> Constraints<'a> {
@@ -149,7 +130,9 @@ impl<'a> Constraints<'a> {
         order.extend(single);
         let slopes = program.jacobian.column_iter().map(|column| column.iter().map(|entry| entry.abs()).sum());
         let slopes = slopes.fold(0.0, f64::max);
-        Self { program, columns: rows.transpose(), rows, order, dense, equalities, slopes }
+        let columns = rows.transpose();
+        let products = OuterProducts::of(&columns);
+        Self { program, columns, rows, products, order, dense, equalities, slopes }
     }
 
     /// m, the number of absolute values.
@@ -254,17 +237,14 @@ impl<'a> Constraints<'a> {
         let mut densities = Vector::zeros(m + self.dense);
         (0..m).for_each(|i| densities[i] = 4.0 * ratios[i] * (ratios[m + i] / sums[i]));
         densities.rows_mut(m, self.dense).copy_from(&ratios.rows(2 * m, self.dense));
-        let mut right = self.rows.clone();
-        right.column_iter_mut().for_each(|mut column| column.component_mul_assign(&densities));
         let mut lower = self.program.quadratic.clone();
-        add_product(&mut lower, &self.columns, &right)?;
+        self.products.add_to(&mut lower, &densities)?;
         self.single().for_each(|(place, k, entry)| lower[(k, k)] += entry * entry * ratios[place]);
         let factor = Cholesky::new(lower);
-        let equalities = (self.equalities.nrows() > 0).then(|| {
-            let mut half = self.equalities.transpose();
-            factor.halfway(&mut half);
-            Cholesky::new(half.tr_mul(&half))
-        });
+        let equalities = match self.equalities.nrows() {
+            0 => None,
+            _ => Some(factor.schur(self.equalities.transpose())?),
+        };
         Some(Newton { ratios, sums, factor, equalities })
     }
 
@@ -305,6 +285,15 @@ impl<'a> Constraints<'a> {
         self.direction(newton, point, &Point { z, ..residuals.clone() })
     }
 
+    /// Absolute values whose both sides, and inequalities whose side has a multiplier above its slack.
+    fn guess(&self, point: &Point) -> Guess {
+        let (m, equalities) = (self.count(), self.program.equalities);
+        let is_met = |k: usize| point.z[k] > point.s[k];
+        let mut met = vec![true; self.program.sides.len()];
+        self.order.iter().enumerate().for_each(|(i, &k)| met[k] = k < equalities || is_met(2 * m + i));
+        Guess { vanishing: (0..m).map(|i| is_met(i) && is_met(m + i)).collect(), met }
+    }
+
     fn answer(&self, point: Point) -> PrimalDual {
         let inequalities = 2 * self.count();
         let mut multipliers = vec![0.0; self.program.sides.len()];
@@ -332,7 +321,7 @@ impl Point {
 
 #[cfg(test)]
 mod tests {
-    use super::super::interior_point::{compressed, equalities_first, push_set, settings};
+    use super::super::interior_point::{ScaledSide, compressed, equalities_first, push_set, settings};
     use super::*;
     use crate::Polyhedron;
     use crate::verify::seeded_direction;

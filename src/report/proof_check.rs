@@ -45,7 +45,7 @@ impl CompositeProof {
         for (own, cut) in self.cuts.iter().zip(&certificate.cuts) {
             check_size("outputs of a cut", m, own.outputs.len())?;
             check_size("subgradient of the outer function", m, own.subgradient.len())?;
-            match outer.epigraph() {
+            match outer.epigraph(m) {
                 Some(epigraph) => {
                     let (product, conjugate) =
                         (own.subgradient.dot(&own.outputs), epigraph.conjugate(&own.subgradient));

@@ -27,6 +27,7 @@ mod plateau;
 mod proposers;
 mod restart;
 mod second_look;
+mod sums;
 mod terminations;
 mod true_terminations;
 mod trusses;

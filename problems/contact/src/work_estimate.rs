@@ -31,7 +31,7 @@ const EXPECTED_PRODUCTS: f64 = 60.0;
 /// Its factors for pieces of meshes, whose boundaries are rough, for tetrahedra, for pairs of bodies, and for nearly
 /// incompressible material.
 const ROUGH: f64 = 1.7;
-const TETRAHEDRA: f64 = 1.5;
+const TETRAHEDRA: f64 = 4.0;
 const PAIRS: f64 = 1.5;
 const INCOMPRESSIBLE: f64 = 4.0;
 

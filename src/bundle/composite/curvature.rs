@@ -3,6 +3,7 @@
 //! ```text
 //! L(x) = ⟨w, c(x)⟩,   w the weights of the outputs at the subproblem's solution
 //! s_j = x_j − x,   y_j = (G_j − G)ᵀ w,   B = argmin Σ |B s_j − y_j|²/|s_j|⁴ over symmetric B,   its positive part
+//! γ = Σ ⟨y_j, s_j⟩/|s_j|⁴ / Σ 1/|s_j|²   where the s_j do not tell B
 //! ```
 //! Where outputs have curvature, a model that linearizes them ends in short steps, unless kinks of h determine the
 //! point. The curvature that matters is that of L, which changes with w: as every Jacobian is kept whole, B follows the
@@ -30,40 +31,56 @@ impl Memory {
     }
 
     /// B at a point with its Jacobian, for weights of the outputs; none where no Jacobian at another point is known.
+    /// Outside of the space of all s_j and y_j, it is γ.
     pub(super) fn curvature(
         &self,
         (point, jacobian): (&Vector, &Matrix),
         weights: &Vector,
         norm: &ScaledNorm,
     ) -> Option<Matrix> {
-        let n = point.len();
         let slope = jacobian.tr_mul(weights);
-        let (mut gram, mut mixed) = (Matrix::zeros(n, n), Matrix::zeros(n, n));
+        let (mut steps, mut changes) = (vec![], vec![]);
         for (other, theirs) in self.0.iter().filter(|(_, theirs)| theirs.shape() == jacobian.shape()) {
             let step = norm.to_coordinates(&(other - point));
             let size = step.norm_squared();
             if size > 0.0 {
-                let change = norm.dual_to_coordinates(&(theirs.tr_mul(weights) - &slope));
-                let trust = 1.0 / (size * size);
-                gram.ger(trust, &step, &step, 1.0);
-                mixed.ger(trust, &change, &step, 1.0);
+                changes.push(norm.dual_to_coordinates(&(theirs.tr_mul(weights) - &slope)) / size);
+                steps.push(step / size);
             }
         }
-        let eigen = gram.symmetric_eigen();
-        let largest = eigen.eigenvalues.max();
-        if !(largest > 0.0 && largest.is_finite()) {
+        let directions: Vec<Vector> = steps.iter().chain(&changes).filter_map(|v| v.try_normalize(0.0)).collect();
+        if steps.is_empty() || !directions.iter().all(|v| v.iter().all(|entry| entry.is_finite())) {
             return None;
         }
-        let q = &eigen.eigenvectors;
-        let right = q.tr_mul(&(&mixed + mixed.transpose())) * q;
-        let values = &eigen.eigenvalues;
-        let fit =
-            Matrix::from_fn(n, n, |i, j| right[(i, j)] / (values[i].max(0.0) + values[j].max(0.0) + UNSEEN * largest));
-        let fit = q * fit * q.transpose();
-        let fit = ((&fit + fit.transpose()) * 0.5).symmetric_eigen();
-        let positive = Matrix::from_diagonal(&fit.eigenvalues.map(|value| value.max(0.0)));
-        let positive = &fit.eigenvectors * positive * fit.eigenvectors.transpose();
-        Some(norm.form_of_coordinates((&positive + positive.transpose()) * 0.5))
-            .filter(|m| m.iter().all(|e| e.is_finite()))
+        let basis = Matrix::from_columns(&directions).qr().q();
+        let within = |vectors: &[Vector]| basis.tr_mul(&Matrix::from_columns(vectors));
+        let (steps, changes) = (within(&steps), within(&changes));
+        let (gram, mixed) = (&steps * steps.transpose(), &changes * steps.transpose());
+        let mean = (mixed.trace() / gram.trace()).max(0.0);
+        let beyond_mean = beyond_mean(&gram, &mixed, mean)?;
+        let mut whole = &basis * beyond_mean * basis.transpose();
+        (0..whole.nrows()).for_each(|i| whole[(i, i)] += mean);
+        Some(norm.form_of_coordinates((&whole + whole.transpose()) * 0.5)).filter(|m| m.iter().all(|e| e.is_finite()))
     }
+}
+
+/// B − γ, for the symmetric B that fits B S Sᵀ to Y Sᵀ, from these products, and is γ where the steps do not tell; its
+/// negative eigenvalues count as zero.
+fn beyond_mean(gram: &Matrix, mixed: &Matrix, mean: f64) -> Option<Matrix> {
+    let eigen = gram.clone().symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    if !(largest > 0.0 && largest.is_finite()) {
+        return None;
+    }
+    let q = &eigen.eigenvectors;
+    let rest = mixed - gram * mean;
+    let right = q.tr_mul(&(&rest + rest.transpose())) * q;
+    let values = &eigen.eigenvalues;
+    let n = values.len();
+    let fit =
+        Matrix::from_fn(n, n, |i, j| right[(i, j)] / (values[i].max(0.0) + values[j].max(0.0) + UNSEEN * largest));
+    let fit = q * fit * q.transpose();
+    let fit = ((&fit + fit.transpose()) * 0.5).symmetric_eigen();
+    let beyond = Matrix::from_diagonal(&fit.eigenvalues.map(|value| value.max(-mean)));
+    Some(&fit.eigenvectors * beyond * fit.eigenvectors.transpose())
 }

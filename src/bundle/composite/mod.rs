@@ -9,6 +9,8 @@
 //! curvature of the outputs that earlier Jacobians show. After repeated failures, and as soon as a step fails on kinks
 //! of c, the model pauses, and the cuts go on.
 
+#[cfg(feature = "interior-point")]
+mod absolute_values;
 mod base;
 #[cfg(feature = "interior-point")]
 mod cones;
@@ -18,6 +20,8 @@ mod kinks;
 mod model;
 mod proof;
 mod proposer;
+#[cfg(feature = "interior-point")]
+mod scaled_program;
 mod steps;
 mod subproblem;
 mod trust;

@@ -20,6 +20,9 @@ use crate::report::{Origin, Termination};
 
 /// Weights tried, upwards and downwards, for one trial point.
 const MAX_WEIGHTS: usize = 20;
+/// Factor of the promised decrease below which a tenth of the weight has brought nothing: curvature holds the step.
+const SAME_DECREASE: f64 = 1.01;
+
 /// The composite model of a run.
 #[derive(Debug)]
 pub(crate) struct Composite {
@@ -78,7 +81,7 @@ impl Composite {
     fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
         let small = at.resolution().small();
         let mut weight = self.trust.weight.max(LEAST_WEIGHT);
-        let (mut raised, mut last) = (false, 0.0);
+        let (mut raised, mut last, mut heavier) = (false, 0.0, None);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
                 if at.restoring() {
@@ -106,16 +109,16 @@ impl Composite {
             }
             weight /= 10.0;
             let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
-            if raised || decided && promised <= last {
+            if raised || decided && promised <= SAME_DECREASE * last {
                 // No step that has not been rejected promises more. What is small already may be proved to be all that
                 // is left.
                 return Ok(match self.lighter_proof(at, base, weight)? {
                     Some(ending) => self.leave(at, ending, base),
                     None if raised => Answer::Silent,
-                    None => self.small_step(at, proposal),
+                    None => self.small_step(at, heavier.unwrap_or(proposal)),
                 });
             }
-            last = promised;
+            (last, heavier) = (promised, Some(proposal));
         }
         Ok(Answer::Silent)
     }

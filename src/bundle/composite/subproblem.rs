@@ -10,8 +10,10 @@
 //! ```
 
 #[cfg(feature = "interior-point")]
-use super::cones::{self, ConeAnswer};
+use super::cones;
 use super::model::{CompositeModel, CompositeStep, MAX_EXCESS, OuterCut};
+#[cfg(feature = "interior-point")]
+use super::scaled_program::ConeAnswer;
 use crate::bundle::cut::MAX_RELATIVE_SLOPE;
 #[cfg(feature = "interior-point")]
 use crate::bundle::proposers::aggregate::slack_error;
@@ -29,6 +31,10 @@ use crate::{Matrix, Vector};
 const MAX_NEWTON: usize = 100;
 /// Largest number of cuts of h in one subproblem; with so many, the last step counts as the solution.
 const MAX_CUTS: usize = 1000;
+/// Number of variables up to which cuts take over what the interior-point method has not solved accurately. With more,
+/// they need far longer; its answer is a trial point like any other, and a proof has a test of its own.
+#[cfg(feature = "interior-point")]
+const MAX_VARIABLES_OF_CUTS: usize = 50;
 /// A subproblem counts as solved once a Newton step promises at most this share of the decrease so far.
 const SOLVED: f64 = 1e-9;
 /// The cuts of h meet h where the gap is at most this share of the promised decrease.
@@ -62,8 +68,8 @@ impl CompositeModel<'_> {
             }),
             None => {
                 #[cfg(feature = "interior-point")]
-                if let Some(epigraph) = self.outer.epigraph() {
-                    return self.solve_by_cones(solver, epigraph);
+                if let Some(epigraph) = self.outer.epigraph(outputs.len()).filter(|epigraph| !epigraph.is_maximum()) {
+                    return self.solve_by_cones(solver, &epigraph);
                 }
                 self.solve_by_cuts(solver, vec![])
             }
@@ -76,7 +82,7 @@ impl CompositeModel<'_> {
     fn solve_by_cones(
         &self,
         solver: &mut EpigraphQpSolver,
-        epigraph: Epigraph,
+        epigraph: &Epigraph,
     ) -> Result<CompositeStep, SubproblemError> {
         // A failure of the interior-point method, even a panic, says nothing about h.
         let answer = without_panic(|| cones::solve(self, epigraph)).ok().flatten();
@@ -101,7 +107,8 @@ impl CompositeModel<'_> {
         let farthest = self.norm.length(&step).max(0.5 * residual / self.weight);
         let slack = slack_error((&sides.0, &sides.1), &point, self.set);
         let left = missed + slack + residual * farthest;
-        if left <= MET_BY_CONES * self.merit(&step).abs() + LEFT_BY_CONES * self.value.abs() {
+        let solved = left <= MET_BY_CONES * self.merit(&step).abs() + LEFT_BY_CONES * self.value.abs();
+        if solved || self.base.len() > MAX_VARIABLES_OF_CUTS {
             return Ok(self.solved(step, vec![cut], sides));
         }
         let there = OuterCut::at(self.outer, there)?;

@@ -17,7 +17,7 @@ use step::Penalised;
 
 /// Number of variables above which a run does without the curved model, because its dense matrices become too
 /// expensive.
-pub(crate) const MAX_DIMENSION: usize = 200;
+pub(crate) const MAX_DIMENSION: usize = 100;
 /// Prediction errors below this share of the changes that are compared count as equally good.
 const ERROR_FLOOR: f64 = 1e-2;
 

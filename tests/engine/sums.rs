@@ -1,0 +1,132 @@
+//! Sums of a smooth function and a convex one: total variation, hinge losses, the lasso, the group lasso.
+
+use nonsmooth::composite::{FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SmoothPlus, SumOfPowers};
+use nonsmooth::verify::seeded_direction;
+use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, Matrix, Report, Vector};
+
+/// s(x) + μ h(G x + c), with s = |A x − b|²/2.
+struct Sum {
+    name: &'static str,
+    weight: f64,
+    outer: Box<dyn OuterFunction>,
+    squares: (Matrix, Vector),
+    outputs: (Matrix, Vector),
+}
+
+impl Sum {
+    fn new<H: OuterFunction + 'static>(
+        (name, weight, outer): (&'static str, f64, H),
+        squares: (Matrix, Vector),
+        outputs: (Matrix, Vector),
+    ) -> Self {
+        Self { name, weight, outer: Box::new(SmoothPlus { weight, outer }), squares, outputs }
+    }
+
+    fn answer(&self, x: &Vector) -> (Vector, Matrix) {
+        let ((a, b), (g, c)) = (&self.squares, &self.outputs);
+        let residual = a * x - b;
+        SmoothPlus::stack((0.5 * residual.norm_squared(), &a.tr_mul(&residual)), (&(g * x + c), g))
+    }
+
+    fn minimize(&self, outer: &dyn OuterFunction) -> Report {
+        let n = self.squares.0.ncols();
+        let theta = CompositeFunction::new(n, outer, |x: &Vector| self.answer(x));
+        let config = BundleTrustConfig {
+            max_evaluations: 200,
+            tolerance: 1e-8,
+            convexity: Convexity::Convex,
+            ..BundleTrustConfig::default()
+        };
+        BundleTrust::new(config).unwrap().minimize(&theta, Vector::zeros(n)).unwrap()
+    }
+}
+
+fn data(rows: usize, columns: usize, seed: u64) -> Matrix {
+    let size = (columns as f64).sqrt();
+    let row = |i: usize| (seeded_direction(columns, seed + i as u64) * size).transpose();
+    Matrix::from_rows(&(0..rows).map(row).collect::<Vec<_>>())
+}
+
+/// Five steps with noise.
+fn total_variation(n: usize) -> Sum {
+    let steps = Vector::from_fn(n, |i, _| if (5 * i / n).is_multiple_of(2) { 1.0 } else { 3.0 });
+    let noisy = steps + seeded_direction(n, 1) * (0.3 * (n as f64).sqrt());
+    let differences = Matrix::from_fn(n - 1, n, |i, j| f64::from(u8::from(j == i + 1)) - f64::from(u8::from(j == i)));
+    let outer = SumOfPowers { exponent: 1.0 };
+    Sum::new(("total variation", 2.0, outer), (Matrix::identity(n, n), noisy), (differences, Vector::zeros(n - 1)))
+}
+
+fn hinges(n: usize) -> Sum {
+    let points = data(5 * n / 2, n, 100);
+    let noise = seeded_direction(points.nrows(), 2) * (5.0 * (n as f64).sqrt());
+    let labels = (&points * seeded_direction(n, 3) * (n as f64).sqrt() + noise).map(f64::signum);
+    let margins = -Matrix::from_diagonal(&labels) * &points;
+    let (weight, count) = (1.0 / labels.len() as f64, labels.len());
+    let squares = (Matrix::identity(n, n) * 0.1_f64.sqrt(), Vector::zeros(n));
+    Sum::new(("hinges", weight, PositiveParts), squares, (margins, Vector::from_element(count, 1.0)))
+}
+
+fn sparse_fit<H: OuterFunction + 'static>(name: &'static str, n: usize, outer: H) -> Sum {
+    let a = data(2 * n / 3, n, 500) / (n as f64).sqrt();
+    let wanted = Vector::from_fn(n, |i, _| if i % 20 < 5 { (3 * i) as f64 - n as f64 } else { 0.0 }) / n as f64;
+    let b = &a * wanted + seeded_direction(a.nrows(), 4) * 0.05;
+    let weight = 0.1 * a.tr_mul(&b).amax();
+    Sum::new((name, weight, outer), (a, b), (Matrix::identity(n, n), Vector::zeros(n)))
+}
+
+fn largest_entry(n: usize) -> Sum {
+    let squares = (Matrix::identity(n, n), seeded_direction(n, 5) * 3.0);
+    Sum::new(("largest entry", 0.5, Maximum), squares, (Matrix::identity(n, n), Vector::zeros(n)))
+}
+
+fn sums(n: usize) -> [Sum; 5] {
+    [
+        total_variation(n),
+        hinges(n),
+        sparse_fit("lasso", n, SumOfPowers { exponent: 1.0 }),
+        sparse_fit("group lasso", n, GroupNorms { sizes: vec![5; n / 5] }),
+        largest_entry(n),
+    ]
+}
+
+#[test]
+fn sums_end_confirmed_within_thirty_evaluations() {
+    for sum in sums(80) {
+        let report = sum.minimize(&*sum.outer);
+        assert!(report.termination.is_confirmed(), "{}: {report}", sum.name);
+        assert!(report.counts.evaluations <= 30, "{}: {report}", sum.name);
+        let certificate = report.certificate.as_ref().unwrap();
+        // A proof may come from the cuts as well.
+        let Some(proof) = &certificate.composite else { continue };
+        assert!(proof.recheck(certificate, &*sum.outer).unwrap().largest() < 1e-9, "{}", sum.name);
+    }
+}
+
+/// As closures, the sums are solved by cuts: a second path to their minima.
+#[test]
+fn cones_and_cuts_lead_to_the_same_minimum() {
+    for sum in sums(10) {
+        let by_cones = sum.minimize(&*sum.outer);
+        let closure = FnOuter::new(|c: &Vector| (sum.outer.value(c), sum.outer.subgradient(c)));
+        let by_cuts = sum.minimize(&closure);
+        let difference = (by_cones.value - by_cuts.value).abs();
+        assert!(difference <= 1e-7 * by_cuts.value.abs(), "{}: {by_cones}\n{by_cuts}", sum.name);
+        assert!(by_cones.value <= by_cuts.value + 1e-9 * by_cuts.value.abs(), "{}", sum.name);
+    }
+}
+
+/// Where entries vanish, the slopes of the squares lie between −μ and μ; elsewhere they are −μ times the sign.
+#[test]
+fn the_lasso_fulfils_its_conditions_of_optimality() {
+    let sum = sparse_fit("lasso", 200, SumOfPowers { exponent: 1.0 });
+    let report = sum.minimize(&*sum.outer);
+    let (a, b) = &sum.squares;
+    let slopes = a.tr_mul(&(a * &report.solution - b)) / sum.weight;
+    let missed = |(x, slope): (&f64, &f64)| match x.abs() > 1e-6 {
+        true => (slope + x.signum()).abs(),
+        false => (slope.abs() - 1.0).max(0.0),
+    };
+    let largest = report.solution.iter().zip(slopes.iter()).map(missed).fold(0.0, f64::max);
+    assert!(largest <= 1e-4, "{largest:e}, {report}");
+    assert!(report.solution.iter().filter(|x| x.abs() <= 1e-6).count() > 50, "{report}");
+}
