@@ -16,6 +16,7 @@ mod active_set;
 mod answer;
 mod certificate;
 mod coordinates;
+mod correction;
 #[cfg(feature = "interior-point")]
 mod dense;
 mod equality_step;
@@ -44,6 +45,7 @@ mod triangular;
 mod working_set;
 
 pub use certificate::kkt_residual;
+pub(crate) use correction::corrected;
 pub(crate) use gram::Gram;
 pub(crate) use independent_rows::IndependentRows;
 pub use problem::{EpigraphQp, Metric, QpCounts, QpError, QpMethod, QpSolution};

@@ -5,6 +5,7 @@
 //! ```
 //! In d = y − x this is the QP with the single cut 0 ≤ v and H = I.
 
+use super::correction::corrected;
 use super::independent_rows::IndependentRows;
 use super::least_violation::least_violation;
 use super::problem::{EpigraphQp, Metric, QpError};
@@ -51,7 +52,7 @@ pub(crate) fn nearest(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
         }
         point = candidate;
     }
-    Ok(point)
+    Ok(if set.violation(&point) > ADMISSIBLE { corrected(set, &point, &point) } else { point })
 }
 
 /// The solver reports the violation of one side where it gave up, or none at all; what is told is the least that a
@@ -83,10 +84,10 @@ pub(crate) fn is_only_point(set: &Polyhedron, x: &Vector, distance: f64) -> bool
 
 /// Relative violation of a point that counts as one of the set.
 const ADMISSIBLE: f64 = 1e-14;
-/// Rounding of a nearest point, relative to the distance of the point that is projected.
-const ALONE: f64 = 1e-12;
 /// Largest number of steps taken after the first.
 const REFINEMENTS: usize = 2;
+/// Rounding of a nearest point, relative to the distance of the point that is projected.
+const ALONE: f64 = 1e-12;
 
 /// The shortest d with x + d in the set.
 fn shortest_step(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {

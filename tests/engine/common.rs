@@ -103,3 +103,8 @@ pub fn plane(normal: &[f64], side: f64, half_width: f64) -> Polyhedron {
         .with_rows(&Matrix::from_row_slice(1, n, normal), &v(&[side]), &v(&[side]))
         .unwrap()
 }
+
+/// Whether the tests of peers run at the sizes of the study: STUDY=full.
+pub fn is_study() -> bool {
+    std::env::var("STUDY").is_ok_and(|value| value == "full")
+}

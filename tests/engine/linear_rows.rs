@@ -1,6 +1,7 @@
 //! Linear rows as linear programs have them: redundant, dependent, of signs, of networks, of dynamics, twice; with
 //! bounds, from inside and outside. What the sets hold is known from the point that they are built around.
 
+use crate::common::is_study;
 use nonsmooth::qp::project;
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, OptimizeError, Polyhedron, Termination, Vector};
 
@@ -117,11 +118,11 @@ fn violation(set: &Polyhedron, x: &Vector) -> f64 {
 
 #[test]
 fn no_set_around_a_point_is_called_empty() {
-    let mut failed = 0;
-    for seed in 0..500_u64 {
+    let (count, least, most) = if is_study() { (2000_u64, 5.0, 200.0) } else { (500, 5.0, 30.0) };
+    for seed in 0..count {
         let mut numbers = Numbers(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 77);
         let kind = KINDS[seed as usize % KINDS.len()];
-        let n = (5.0 * 6.0_f64.powf(numbers.next())) as usize;
+        let n = (least * f64::powf(most / least, numbers.next())) as usize;
         let (set, point) = set(kind, &mut numbers, n);
         let start = match numbers.below(3) {
             0 => Vector::zeros(n),
@@ -138,15 +139,15 @@ fn no_set_around_a_point_is_called_empty() {
         let config = BundleTrustConfig { max_evaluations: 40, ..BundleTrustConfig::default() };
         let report = BundleTrust::new(config).unwrap().constraints(set.clone()).minimize(&theta, start);
         let report = report.unwrap_or_else(|error| panic!("{seed} {kind:?}: {error}"));
-        failed += usize::from(matches!(report.termination, Termination::SubproblemFailed { .. }));
+        let failed = matches!(report.termination, Termination::SubproblemFailed { .. });
+        assert!(!failed, "{seed} {kind:?}: {report}");
         assert!(violation(&set, &report.solution) < 1e-9, "{seed} {kind:?}: {report}");
         if let Some(certificate) = &report.certificate {
             // One multiplier per row, dependent ones included.
             assert_eq!(certificate.row_multipliers.len(), set.rows().nrows());
         }
     }
-    // Degenerate corners where the terms of rows are rounding of terms in other rows.
-    assert!(failed <= 6, "{failed} subproblems failed");
+    println!("{count} sets of up to {most} variables: none called empty, no subproblem failed");
 }
 
 #[test]

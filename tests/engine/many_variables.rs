@@ -1,5 +1,6 @@
 //! Many variables: the work per evaluation grows in proportion to cuts × variables, and the evaluations stay few.
 
+use crate::common::is_study;
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Report, Vector};
 use std::cell::Cell;
 use testset::Scalable;
@@ -23,7 +24,13 @@ fn run(problem: &Scalable, config: BundleTrustConfig) -> (Option<usize>, Report)
 }
 
 fn check(problem: &Scalable, config: BundleTrustConfig, (pinned, allowed): (usize, usize)) {
+    let begun = std::time::Instant::now();
     let (count, report) = run(problem, config);
+    if is_study() {
+        let per_evaluation = 1e3 * begun.elapsed().as_secs_f64() / report.counts.evaluations as f64;
+        let n = problem.start.len();
+        println!("{} n = {n}: {} evaluations, {per_evaluation:.2} ms each", problem.name, report.counts.evaluations);
+    }
     let count = count.unwrap_or_else(|| panic!("{}: not solved, {report}", problem.name));
     assert!(count <= allowed, "{}: {count} evaluations", problem.name);
     // The last bit of long sums, which the registers of the processor decide, leads two courses apart.
@@ -34,16 +41,24 @@ fn check(problem: &Scalable, config: BundleTrustConfig, (pinned, allowed): (usiz
 #[test]
 fn a_chain_of_a_thousand_kinks_is_solved() {
     check(&Scalable::chained_lq(1000), BundleTrustConfig::default(), (135, 600));
+    if is_study() {
+        check(&Scalable::chained_lq(200), BundleTrustConfig::default(), (197, 600));
+        check(&Scalable::chained_lq(3000), BundleTrustConfig::default(), (138, 600));
+    }
 }
 
 #[test]
 fn the_largest_of_three_chains_of_a_thousand_variables_is_solved() {
     check(&Scalable::chained_cb3_ii(1000), BundleTrustConfig::default(), (22, 600));
+    if is_study() {
+        check(&Scalable::chained_cb3_ii(200), BundleTrustConfig::default(), (33, 600));
+        check(&Scalable::chained_cb3_ii(3000), BundleTrustConfig::default(), (35, 600));
+    }
 }
 
 #[test]
 fn the_largest_of_two_hundred_squares_is_solved() {
-    // Beyond two hundred variables, runs do without the dense matrices of the curved model.
+    // Beyond a hundred variables, runs do without the dense matrices of the curved model.
     check(&Scalable::maxq(201), BundleTrustConfig::default(), (1677, 2000));
 }
 

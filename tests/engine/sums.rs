@@ -1,5 +1,6 @@
 //! Sums of a smooth function and a convex one: total variation, hinge losses, the lasso, the group lasso.
 
+use crate::common::is_study;
 use nonsmooth::composite::{FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SmoothPlus, SumOfPowers};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, Matrix, Report, Vector};
@@ -91,8 +92,14 @@ fn sums(n: usize) -> [Sum; 5] {
 
 #[test]
 fn sums_end_confirmed_within_thirty_evaluations() {
-    for sum in sums(80) {
+    let sizes = if is_study() { vec![80, 200, 1000] } else { vec![80] };
+    for sum in sizes.into_iter().flat_map(sums) {
+        let begun = std::time::Instant::now();
         let report = sum.minimize(&*sum.outer);
+        let (evaluations, seconds) = (report.counts.evaluations, begun.elapsed().as_secs_f64());
+        let per_evaluation = seconds / evaluations as f64;
+        let n = report.solution.len();
+        println!("{} n = {n}: {evaluations} evaluations, {per_evaluation:.3} s each", sum.name);
         assert!(report.termination.is_confirmed(), "{}: {report}", sum.name);
         assert!(report.counts.evaluations <= 30, "{}: {report}", sum.name);
         let certificate = report.certificate.as_ref().unwrap();

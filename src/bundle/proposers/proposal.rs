@@ -3,7 +3,7 @@
 use crate::bundle::constrained::Tangent;
 use crate::bundle::cut::LEAST_ACTIVE_MULTIPLIER;
 use crate::bundle::state::BundleState;
-use crate::qp::{QpError, nearest};
+use crate::qp::{QpError, corrected, nearest};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
@@ -193,6 +193,12 @@ impl Proposal {
             let still = set.with_still_rows(&self.trial, &state.center, &state.norm.rounded_moves(&self.step));
             if violation(&still) <= allowed {
                 (self.violation, self.trial) = (violation(&still), still);
+            }
+        }
+        if self.violation > allowed && self.violation.is_finite() {
+            let corrected = corrected(set, &self.trial, &state.center);
+            if violation(&corrected) <= allowed {
+                (self.violation, self.trial) = (violation(&corrected), corrected);
             }
         }
         let mut shares = shares(self.violation);
