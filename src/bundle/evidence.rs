@@ -73,6 +73,8 @@ pub(crate) struct Evidence {
     pub error: f64,
     /// The decrease seen in the run, in units of Θ.
     pub drop: f64,
+    /// The decrease from the start on.
+    drop_from_start: f64,
     /// Largest distance of an active cut, in units of Θ: how far the linearizations of the bundle can vary in between.
     pub distance: f64,
     /// Largest distance of an active cut in the norm of the run, relative to the size of the variables; for reports.
@@ -108,6 +110,10 @@ impl Evidence {
             drop: match &state.constraints {
                 Some(constraints) => constraints.merit_drop(),
                 None => state.seen.highest - state.center_value,
+            },
+            drop_from_start: match &state.constraints {
+                Some(constraints) => constraints.merit_drop(),
+                None => state.seen.highest_counted - state.center_value,
             },
             distance: if of_outputs {
                 of_tangents
@@ -148,7 +154,7 @@ impl Evidence {
     /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as
     /// far as the run has gone, and what cancels to 1e-8 along them counts as zero.
     pub(crate) fn gap(&self) -> f64 {
-        let reach = |i: &Coordinate| i.moved.max(i.farthest).max(self.drop / i.steepest);
+        let reach = |i: &Coordinate| i.moved.max(i.farthest).max(self.drop_from_start / i.steepest);
         let falls = |i: &Coordinate| {
             if i.room.is_finite() {
                 i.fall(i.room)
