@@ -9,28 +9,27 @@
 use crate::{Matrix, Polyhedron, Vector};
 
 /// Largest number of corrections, each of which removes what rounding left of the one before.
-const MAX_CORRECTIONS: usize = 4;
+const MAX_CORRECTIONS: usize = 10;
+/// An entry that falls to this share of itself is zero: what is left is rounding of its correction.
+const VANISHED: f64 = 1e-10;
 /// Singular values below this share of the largest one are those of rows that depend on others.
 const DEPENDENT: f64 = 1e-11;
 
-/// The point corrected as long as that lowers its violation, which is measured near a reference point.
+/// The point, or a correction of it with a lower violation, which is measured near a reference point.
 pub(crate) fn corrected(set: &Polyhedron, point: &Vector, reference: &Vector) -> Vector {
-    let mut best = determined(set, point);
-    let mut violation = set.violation_near(&best, reference);
+    let mut point = determined(set, point);
+    let mut best = (set.violation_near(&point, reference), point.clone());
     for _ in 0..MAX_CORRECTIONS {
-        if violation == 0.0 {
-            break;
-        }
-        let Some(step) = correction(set, &best) else { break };
-        let next = determined(set, &(&best + step));
-        let left = set.violation_near(&next, reference);
-        if left < violation {
-            (best, violation) = (next, left);
-        } else {
-            break;
+        let Some(step) = correction(set, &point).filter(|_| best.0 > 0.0) else { break };
+        // The worst row may stay as it is while others come to meet theirs.
+        let moved = |x: f64, change: f64| if (x + change).abs() <= VANISHED * x.abs() { 0.0 } else { x + change };
+        point = determined(set, &point.zip_map(&step, moved));
+        let violation = set.violation_near(&point, reference);
+        if violation < best.0 {
+            best = (violation, point.clone());
         }
     }
-    best
+    best.1
 }
 
 /// The point with the entries that equality rows of one entry give, inside of the box.

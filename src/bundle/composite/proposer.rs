@@ -20,7 +20,7 @@ use crate::report::{Origin, Termination};
 
 /// Weights tried, upwards and downwards, for one trial point.
 const MAX_WEIGHTS: usize = 20;
-/// Factor of the promised decrease below which a tenth of the weight has brought nothing: curvature holds the step.
+/// Factor of the promised decrease below which a tenth of the weight has brought nothing beside curvature.
 const SAME_DECREASE: f64 = 1.01;
 
 /// The composite model of a run.
@@ -109,13 +109,15 @@ impl Composite {
             }
             weight /= 10.0;
             let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
-            if raised || decided && promised <= SAME_DECREASE * last {
+            // Curvature of the outputs holds a step whatever the weight is.
+            let same = if self.steps.needs_curvature { SAME_DECREASE } else { 1.0 };
+            if raised || decided && promised <= same * last {
                 // No step that has not been rejected promises more. What is small already may be proved to be all that
                 // is left.
                 return Ok(match self.lighter_proof(at, base, weight)? {
                     Some(ending) => self.leave(at, ending, base),
                     None if raised => Answer::Silent,
-                    None => self.small_step(at, heavier.unwrap_or(proposal)),
+                    None => self.small_step(at, heavier.filter(|_| self.steps.needs_curvature).unwrap_or(proposal)),
                 });
             }
             (last, heavier) = (promised, Some(proposal));
