@@ -56,7 +56,8 @@ impl Memory {
         let within = |vectors: &[Vector]| basis.tr_mul(&Matrix::from_columns(vectors));
         let (steps, changes) = (within(&steps), within(&changes));
         let (gram, mixed) = (&steps * steps.transpose(), &changes * steps.transpose());
-        let mean = (mixed.trace() / gram.trace()).max(0.0);
+        // With at most as many variables as Jacobians, the steps come to tell B in all directions.
+        let mean = if point.len() > MAX_JACOBIANS { (mixed.trace() / gram.trace()).max(0.0) } else { 0.0 };
         let beyond_mean = beyond_mean(&gram, &mixed, mean)?;
         let mut whole = &basis * beyond_mean * basis.transpose();
         (0..whole.nrows()).for_each(|i| whole[(i, i)] += mean);
