@@ -206,20 +206,6 @@ impl Polyhedron {
         side_violation(value, self.row_lower[i], self.row_upper[i], scale)
     }
 
-    /// A point of the box with the variables of violated rows back where they come from, where they have moved by no
-    /// more than rounding of the whole step: rows whose terms are all zero there are met nowhere else.
-    pub(crate) fn with_still_rows(&self, x: &Vector, from: &Vector, rounding: &Vector) -> Vector {
-        let mut still = x.clone();
-        for i in (0..self.rows.nrows()).filter(|&i| self.row_violation(i, x, from) > 0.0) {
-            for (k, _) in self.rows.row(i).iter().enumerate().filter(|(_, a)| **a != 0.0) {
-                if (x[k] - from[k]).abs() <= rounding[k] {
-                    still[k] = from[k];
-                }
-            }
-        }
-        self.clamp_to_box(&still)
-    }
-
     /// x with every entry moved into its box.
     pub(crate) fn clamp_to_box(&self, x: &Vector) -> Vector {
         Vector::from_fn(x.len(), |i, _| x[i].max(self.lower[i]).min(self.upper[i]))

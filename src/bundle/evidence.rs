@@ -113,7 +113,7 @@ impl Evidence {
             },
             drop_from_start: match &state.constraints {
                 Some(constraints) => constraints.merit_drop(),
-                None => state.seen.highest_counted - state.center_value,
+                None => state.seen.first - state.center_value,
             },
             distance: if of_outputs {
                 of_tangents

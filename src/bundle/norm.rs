@@ -12,9 +12,6 @@ use crate::qp::kernels::{weighted_squared_distance, weighted_squares};
 use crate::{InputError, Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
-/// Moves of a variable up to this share of the length of a step may be its rounding.
-const ROUNDED_MOVE: f64 = 1e-12;
-
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
@@ -160,12 +157,6 @@ impl ScaledNorm {
             Scale::Weights(weights) => 1.0 / weights[i].sqrt(),
             Scale::Linear(Coordinates { matrix, .. }) => matrix.row(i).norm(),
         }
-    }
-
-    /// Moves of the variables that may be rounding of a step.
-    pub(crate) fn rounded_moves(&self, step: &Vector) -> Vector {
-        let share = ROUNDED_MOVE * self.length(step);
-        Vector::from_fn(step.len(), |i, _| share * self.unit(i))
     }
 
     /// Whether W is the identity.

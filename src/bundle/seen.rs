@@ -7,8 +7,8 @@ use crate::Vector;
 pub(crate) struct Seen {
     /// The highest value, in units of Θ.
     pub highest: f64,
-    /// The highest value of the points that count.
-    pub highest_counted: f64,
+    /// The value at the start.
+    pub first: f64,
     /// The largest |g_i| of every variable.
     pub steepest: Vector,
     /// The least and the largest value of every variable at the points that count.
@@ -17,12 +17,7 @@ pub(crate) struct Seen {
 
 impl Seen {
     pub(crate) fn new(point: &Vector, value: f64, subgradient: &Vector) -> Self {
-        Self {
-            highest: value,
-            highest_counted: value,
-            steepest: subgradient.abs(),
-            range: (point.clone(), point.clone()),
-        }
+        Self { highest: value, first: value, steepest: subgradient.abs(), range: (point.clone(), point.clone()) }
     }
 
     /// Takes in an evaluation. `counts`: whether the point may lie as far as a minimizer; points above the start say
@@ -30,7 +25,6 @@ impl Seen {
     pub(crate) fn add(&mut self, point: &Vector, (value, subgradient): (f64, &Vector), counts: bool) {
         self.highest = self.highest.max(value);
         if counts {
-            self.highest_counted = self.highest_counted.max(value);
             self.range = (self.range.0.inf(point), self.range.1.sup(point));
         }
         self.steepest.zip_apply(subgradient, |steepest, slope| *steepest = steepest.max(slope.abs()));

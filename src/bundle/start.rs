@@ -70,7 +70,7 @@ impl<'o> BundleTrust<'o> {
         check_size("constraints", dimension, set.dimension())?;
         let norm = ScaledNorm::new(&self.config.scaling, &set)?;
         let rows = IndependentRows::new(&set, |i| norm.unit(i));
-        let start = admissible_start(&set, &rows, &norm, x0)?;
+        let start = admissible_start(&set, &rows, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
         let (state, linearization) =
             first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, (&rows.set, norm), start)?;
@@ -108,12 +108,7 @@ impl<'o> BundleTrust<'o> {
 }
 
 /// Moves the start into the admissible set.
-fn admissible_start(
-    set: &Polyhedron,
-    rows: &IndependentRows,
-    norm: &ScaledNorm,
-    x0: Vector,
-) -> Result<Vector, OptimizeError> {
+fn admissible_start(set: &Polyhedron, rows: &IndependentRows, x0: Vector) -> Result<Vector, OptimizeError> {
     let before = set.violation(&x0);
     let refused = |error| match error {
         QpError::Infeasible { violation } => OptimizeError::Infeasible { violation },
@@ -125,15 +120,7 @@ fn admissible_start(
     }
     let projected = nearest(set, &x0).map_err(refused)?;
     let violation = set.violation_near(&projected, &x0);
-    if violation <= MAX_START_VIOLATION {
-        return Ok(projected);
-    }
-    let still = set.with_still_rows(&projected, &x0, &norm.rounded_moves(&(&projected - &x0)));
-    if set.violation_near(&still, &x0) <= MAX_START_VIOLATION {
-        Ok(still)
-    } else {
-        Err(OptimizeError::Infeasible { violation })
-    }
+    if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
 /// The state after the first evaluation, and what that said about outputs and Jacobian.

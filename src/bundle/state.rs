@@ -167,7 +167,7 @@ impl BundleState {
     ) {
         let size = config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         // The objective of an infeasible start may lie below all that is feasible.
-        let counts = self.constraints.is_some() || evaluation.value <= self.seen.highest_counted;
+        let counts = self.constraints.is_some() || evaluation.value <= self.seen.first;
         self.seen.add(point, (evaluation.value, &evaluation.subgradient), counts);
         if let (Some(constraints), Some(found)) = (&mut self.constraints, &evaluation.constraints) {
             constraints.add(point, evaluation.value, found, &self.norm);

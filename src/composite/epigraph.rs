@@ -14,16 +14,16 @@
 use crate::Vector;
 use std::ops::Range;
 
-/// A convex function of the outputs as a sum of terms of consecutive outputs, whose epigraphs are cones.
-#[derive(Debug, Clone, PartialEq)]
+/// A convex function of the outputs as a sum of terms of consecutive outputs, whose epigraphs are cones; by default the
+/// function 0 of no outputs.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Epigraph {
     terms: Vec<EpigraphTerm>,
 }
 
 /// One term of a sum: μ h_k of some outputs.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct EpigraphTerm {
+pub(crate) struct EpigraphTerm {
     /// The outputs of the term.
     pub outputs: Range<usize>,
     /// The factor μ: > 0, or of any sign where the function is linear.
@@ -54,12 +54,13 @@ pub enum ConeFunction {
 }
 
 impl Epigraph {
-    /// A function of all of `count` outputs.
+    /// A function of `count` outputs.
     pub fn of(function: ConeFunction, count: usize) -> Self {
-        Self { terms: vec![EpigraphTerm { outputs: 0..count, weight: 1.0, function }] }
+        Self::default().and(function, 1.0, count)
     }
 
-    /// The sum with another function of `count` further outputs.
+    /// The sum with a factor times a function of `count` further outputs. The factor `weight` must be > 0, unless the
+    /// function is linear.
     #[must_use]
     pub fn and(mut self, function: ConeFunction, weight: f64, count: usize) -> Self {
         let first = self.count();
@@ -67,7 +68,7 @@ impl Epigraph {
         self
     }
 
-    /// The sum of this function times a factor with a linear function of one output before all others.
+    /// The sum of one more output, before all others, with this function times a factor > 0.
     #[must_use]
     pub fn after_linear(mut self, factor: f64) -> Self {
         for term in &mut self.terms {
@@ -79,15 +80,16 @@ impl Epigraph {
     }
 
     /// The terms, in the order of their outputs.
-    pub fn terms(&self) -> &[EpigraphTerm] {
+    #[cfg(feature = "interior-point")]
+    pub(crate) fn terms(&self) -> &[EpigraphTerm] {
         &self.terms
     }
 
-    /// Whether all of h is a maximum of outputs: a cut is one of them, and few of them count.
+    /// Whether h is a maximum of outputs: a cut is one of them, and few of them count.
     #[cfg(feature = "interior-point")]
     pub(crate) fn is_maximum(&self) -> bool {
-        self.terms.iter().all(|term| matches!(term.function, ConeFunction::Largest | ConeFunction::Linear))
-            && self.terms.first().is_some_and(|term| term.function == ConeFunction::Largest)
+        let counting = self.terms.iter().filter(|term| term.weight != 0.0);
+        counting.map(|term| term.function).eq([ConeFunction::Largest])
     }
 
     /// The number of outputs.

@@ -21,7 +21,9 @@ mod sum;
 
 pub use crate::nonlinear::OutputPiece;
 pub use constrained::WithConstraints;
-pub use epigraph::{ConeFunction, Epigraph, EpigraphTerm};
+#[cfg(feature = "interior-point")]
+pub(crate) use epigraph::EpigraphTerm;
+pub use epigraph::{ConeFunction, Epigraph};
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
 pub use outer::{
     EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, OuterPart, PositiveParts, SumOfPowers, weighted_gram,

@@ -261,9 +261,8 @@ impl OuterFunction for GroupNorms {
     }
 
     fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
-        let nothing = Epigraph::of(ConeFunction::Linear, 0);
         let of_groups = |sum: Epigraph, &size: &usize| sum.and(ConeFunction::Norm, 1.0, size);
-        (self.sizes.iter().sum::<usize>() == outputs).then(|| self.sizes.iter().fold(nothing, of_groups))
+        (self.sizes.iter().sum::<usize>() == outputs).then(|| self.sizes.iter().fold(Epigraph::default(), of_groups))
     }
 
     fn is_homogeneous(&self) -> bool {

@@ -107,9 +107,10 @@ fn solve_counted(program: &Program<'_>) -> Option<(PrimalDual, usize)> {
         images.axpy(length, &change, 1.0);
         steps += 1;
     }
-    let (_, point) = best?;
+    let (error, point) = best?;
     let guess = constraints.guess(&point);
-    Some((polish(program, constraints.answer(point), &guess)?, steps))
+    let answer = constraints.answer(point);
+    Some((if error > ACCURATE { polish(program, answer, &guess)? } else { answer }, steps))
 }
 
 impl<'a> Constraints<'a> {

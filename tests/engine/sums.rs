@@ -1,7 +1,10 @@
 //! Sums of a smooth function and a convex one: total variation, hinge losses, the lasso, the group lasso.
 
 use crate::common::is_study;
-use nonsmooth::composite::{FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SmoothPlus, SumOfPowers};
+use nonsmooth::composite::{
+    ConeFunction, Epigraph, EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SmoothPlus,
+    SumOfPowers,
+};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, Matrix, Report, Vector};
 use std::cell::RefCell;
@@ -89,18 +92,57 @@ fn sparse_fit<H: OuterFunction + 'static>(name: &'static str, n: usize, outer: H
     Sum::new((name, weight, outer), (a, b), (Matrix::identity(n, n), Vector::zeros(n)))
 }
 
-fn largest_entry(n: usize) -> Sum {
+/// |x − b|²/2 and a function of x itself.
+fn proximal<H: OuterFunction + 'static>(name: &'static str, n: usize, outer: H) -> Sum {
     let squares = (Matrix::identity(n, n), seeded_direction(n, 5) * 3.0);
-    Sum::new(("largest entry", 0.5, Maximum), squares, (Matrix::identity(n, n), Vector::zeros(n)))
+    Sum::new((name, 0.5, outer), squares, (Matrix::identity(n, n), Vector::zeros(n)))
 }
 
-fn sums(n: usize) -> [Sum; 5] {
+/// A function of a user: half the sum of absolute values of the first third of the outputs, the positive parts of the
+/// next, and the norm of the rest.
+struct Mixed;
+
+impl Mixed {
+    fn thirds(outputs: usize) -> [usize; 3] {
+        [outputs / 3, outputs / 3, outputs - 2 * (outputs / 3)]
+    }
+
+    fn parts(outputs: &Vector) -> [(Vector, f64, Box<dyn OuterFunction>); 3] {
+        let [first, second, third] = Self::thirds(outputs.len());
+        let part = |from: usize, count: usize| outputs.rows(from, count).into_owned();
+        [
+            (part(0, first), 0.5, Box::new(SumOfPowers { exponent: 1.0 })),
+            (part(first, second), 1.0, Box::new(PositiveParts)),
+            (part(first + second, third), 1.0, Box::new(EuclideanNorm)),
+        ]
+    }
+}
+
+impl OuterFunction for Mixed {
+    fn value(&self, outputs: &Vector) -> f64 {
+        Self::parts(outputs).iter().map(|(own, weight, function)| weight * function.value(own)).sum()
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        let slopes = Self::parts(outputs).map(|(own, weight, function)| function.subgradient(&own) * weight);
+        Vector::from_iterator(outputs.len(), slopes.iter().flat_map(|slope| slope.iter().copied()))
+    }
+
+    fn epigraph(&self, outputs: usize) -> Option<Epigraph> {
+        let [first, second, third] = Self::thirds(outputs);
+        let absolute = Epigraph::default().and(ConeFunction::AbsoluteValues, 0.5, first);
+        Some(absolute.and(ConeFunction::PositiveParts, 1.0, second).and(ConeFunction::Norm, 1.0, third))
+    }
+}
+
+fn sums(n: usize) -> [Sum; 6] {
     [
         total_variation(n),
         hinges(n),
         sparse_fit("lasso", n, SumOfPowers { exponent: 1.0 }),
         sparse_fit("group lasso", n, GroupNorms { sizes: vec![5; n / 5] }),
-        largest_entry(n),
+        proximal("largest entry", n, Maximum),
+        proximal("terms of a user", n, Mixed),
     ]
 }
 

@@ -13,7 +13,7 @@ use crate::qp::program::Program;
 use crate::{Matrix, Vector};
 
 /// One absolute value |a c_i|, and what it leaves of the function: a share b c_i.
-struct AbsoluteValue {
+pub(super) struct AbsoluteValue {
     output: usize,
     /// a > 0.
     factor: f64,
@@ -21,13 +21,8 @@ struct AbsoluteValue {
     rest: f64,
 }
 
-/// The answer, which may be none; none at all where h has other terms.
-pub(super) fn solve(model: &CompositeModel<'_>, metric: &Matrix, epigraph: &Epigraph) -> Option<Option<ConeAnswer>> {
-    Some(solve_values(model, metric, (&absolute_values(epigraph)?, epigraph)))
-}
-
 /// The absolute values of h; none where h has other terms than these, positive parts and linear functions.
-fn absolute_values(epigraph: &Epigraph) -> Option<Vec<AbsoluteValue>> {
+pub(super) fn absolute_values(epigraph: &Epigraph) -> Option<Vec<AbsoluteValue>> {
     let mut values = vec![];
     for term in epigraph.terms() {
         let (factor, rest) = match term.function {
@@ -41,7 +36,8 @@ fn absolute_values(epigraph: &Epigraph) -> Option<Vec<AbsoluteValue>> {
     Some(values)
 }
 
-fn solve_values(
+/// Solves the subproblem of an h that consists of these values and linear terms.
+pub(super) fn solve(
     model: &CompositeModel<'_>,
     metric: &Matrix,
     (values, epigraph): (&[AbsoluteValue], &Epigraph),

@@ -13,7 +13,7 @@
 //! h(c + G d) − ⟨w, c + G d⟩ + h*(w) + Σ |μ_i| slack_i + ‖ρ‖* max(‖d‖, ‖ρ‖*/2u)
 //! ```
 
-use super::absolute_values;
+use super::absolute_values::{self, absolute_values};
 use super::model::CompositeModel;
 use super::scaled_program::{ConeAnswer, Units, exponent, linear_part, multipliers, sides_of};
 use crate::composite::{ConeFunction, Epigraph, EpigraphTerm};
@@ -31,7 +31,7 @@ struct Constraints {
     cones: Vec<SupportedConeT<f64>>,
 }
 
-/// The first row and the first epigraph variable of a term.
+/// A term and its first row.
 struct Place<'a> {
     term: &'a EpigraphTerm,
     row: usize,
@@ -42,8 +42,8 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: &Epigraph) -> Option<C
     let (outputs, jacobian) = (&model.linearization.outputs, &model.linearization.jacobian);
     let (m, n) = jacobian.shape();
     let metric = model.with_metric(Matrix::zeros(n, n));
-    if let Some(answer) = absolute_values::solve(model, &metric, epigraph) {
-        return answer;
+    if let Some(values) = absolute_values(epigraph) {
+        return absolute_values::solve(model, &metric, (&values, epigraph));
     }
     let units = Units::of_terms(outputs, jacobian, (&metric, epigraph));
     let count: usize = epigraph.terms().iter().map(variables).sum();

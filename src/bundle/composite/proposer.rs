@@ -81,7 +81,7 @@ impl Composite {
     fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
         let small = at.resolution().small();
         let mut weight = self.trust.weight.max(LEAST_WEIGHT);
-        let (mut raised, mut last, mut heavier) = (false, 0.0, None);
+        let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
                 if at.restoring() {
@@ -117,10 +117,10 @@ impl Composite {
                 return Ok(match self.lighter_proof(at, base, weight)? {
                     Some(ending) => self.leave(at, ending, base),
                     None if raised => Answer::Silent,
-                    None => self.small_step(at, heavier.filter(|_| self.steps.needs_curvature).unwrap_or(proposal)),
+                    None => self.small_step(at, proposal),
                 });
             }
-            (last, heavier) = (promised, Some(proposal));
+            last = promised;
         }
         Ok(Answer::Silent)
     }

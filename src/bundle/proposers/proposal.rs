@@ -189,12 +189,6 @@ impl Proposal {
             self.violation = violation(&projected);
             self.trial = projected;
         }
-        if self.violation > allowed {
-            let still = set.with_still_rows(&self.trial, &state.center, &state.norm.rounded_moves(&self.step));
-            if violation(&still) <= allowed {
-                (self.violation, self.trial) = (violation(&still), still);
-            }
-        }
         if self.violation > allowed && self.violation.is_finite() {
             let corrected = corrected(set, &self.trial, &state.center);
             if violation(&corrected) <= allowed {
