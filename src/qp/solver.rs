@@ -106,7 +106,9 @@ impl EpigraphQpSolver {
             }
         }
         // Where cuts are far steeper than others, rounding in one scale of the columns may look like a contradiction.
-        if let Some(&violation) = contradictions.first().filter(|_| contradictions.len() == scales.len()) {
+        // So may sides that are all but opposite where d = 0 meets them.
+        let all = contradictions.len() == scales.len();
+        if let Some(&violation) = contradictions.first().filter(|_| all && !holds_zero(qp)) {
             return Err(QpError::Infeasible { violation });
         }
         let best = match best {
@@ -203,6 +205,12 @@ impl EpigraphQpSolver {
         };
         self.memory = actives.iter().map(identify).collect();
     }
+}
+
+/// Whether d = 0 lies in the box and between the sides of the rows.
+fn holds_zero(qp: &EpigraphQp<'_>) -> bool {
+    qp.row_lower.iter().chain(qp.lower).all(|side| *side <= 0.0)
+        && qp.row_upper.iter().chain(qp.upper).all(|side| *side >= 0.0)
 }
 
 fn keep_better(best: &mut Option<Attempt>, attempt: Attempt) {

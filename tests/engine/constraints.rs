@@ -8,7 +8,7 @@ use nonsmooth::{
 };
 use std::cell::Cell;
 use testset::constrained::{ConstrainedProblem, Kind, find};
-use testset::kit::scratch;
+use testset::kit::{jitters, scratch};
 
 fn v(values: &[f64]) -> Vector {
     Vector::from_column_slice(values)
@@ -219,6 +219,15 @@ fn degenerate_constraints_are_never_confirmed() {
         ] {
             assert!(!report.termination.is_confirmed(), "{report}");
         }
+    }
+    for seed in 0..100 {
+        // Multipliers grow without bound towards the end of the cusp.
+        let start: Vec<f64> = jitters(&[0.5, 0.5], seed).map(|entry| 0.5 + 0.2 * entry).collect();
+        let report = minimize(&cusp, Polyhedron::unbounded(2), &start);
+        let end = &report.termination;
+        let unproved =
+            matches!(end, Termination::DegenerateConstraints { .. } | Termination::StationaryUnconfirmed { .. });
+        assert!(unproved, "seed {seed}: {report}");
     }
     let report = minimize(&square, Polyhedron::unbounded(1), &[1.0]);
     assert!(matches!(report.termination, Termination::DegenerateConstraints { .. }), "{report}");

@@ -4,6 +4,7 @@
 mod confirmation;
 pub(crate) mod model;
 pub(crate) mod planes;
+mod qualification;
 mod stationarity;
 mod weight;
 

@@ -7,6 +7,7 @@
 //! ```
 
 use super::model::{MANY_VARIABLES, Model};
+use super::qualification::fails_within;
 use crate::bundle::norm::WeightedMetric;
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
@@ -68,7 +69,11 @@ impl CuttingPlanes {
             }
             at.state.set_weight(10.0 * at.state.weight);
         }
-        Err(Termination::SubproblemFailed { reason: last.to_string() })
+        Err(match fails_within(at) {
+            // Multipliers that grow without bound leave the subproblem without an accurate answer.
+            Some(radius) => Termination::DegenerateConstraints { radius },
+            None => Termination::SubproblemFailed { reason: last.to_string() },
+        })
     }
 
     /// Solves the subproblem at the weight of the run.
