@@ -81,7 +81,13 @@ impl RunOutcome {
     /// What the engine advises; the package has its own advice for users of Python.
     #[getter]
     fn advice(&self) -> &'static str {
-        self.report.termination.advice()
+        self.report.advice()
+    }
+
+    /// Whether the problem was declared convex.
+    #[getter]
+    fn convex(&self) -> bool {
+        self.report.certificate.as_ref().is_some_and(|certificate| certificate.convex)
     }
 
     /// Largest value minus minimum that the cuts of a convex function leave, if it was declared convex and confirmed.

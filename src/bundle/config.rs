@@ -5,7 +5,7 @@ use crate::checks::check_setting;
 use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
-/// What is known about the convexity of Θ on the admissible set.
+/// What is known about the convexity of the problem: of Θ on the admissible set, and of its nonlinear constraints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -13,9 +13,10 @@ pub enum Convexity {
     /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
     #[default]
     Unknown,
-    /// Θ is convex. The cuts bound how far Θ can still fall within reach of the variables, this bound decides the end,
-    /// and no restart is made. Linearization errors below zero by more than promised errors and rounding are noise of
-    /// the oracle.
+    /// Θ is convex, and so is every nonlinear inequality. The cuts bound how far Θ can still fall within reach of the
+    /// variables, this bound decides the end, and no restart is made. Linearization errors below zero by more than
+    /// promised errors and rounding are noise of the oracle. Nonlinear equalities, and inequalities that their
+    /// linearizations prove nonconvex, leave no bound: the end is then decided as for unknown convexity.
     Convex,
 }
 

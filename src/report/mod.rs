@@ -84,6 +84,11 @@ impl Report {
         self.constraints.iter().all(|constraint| constraint.satisfied)
     }
 
+    /// What to try next.
+    pub fn advice(&self) -> &'static str {
+        self.termination.advice(self.certificate.as_ref().is_some_and(|certificate| certificate.convex))
+    }
+
     fn write_constraints(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(penalty) = self.penalty else { return Ok(()) };
         let mut order: Vec<usize> = (0..self.constraints.len()).collect();
@@ -103,7 +108,7 @@ impl Report {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "stopped:     {}", self.termination)?;
-        writeln!(f, "             {}", self.termination.advice())?;
+        writeln!(f, "             {}", self.advice())?;
         writeln!(
             f,
             "objective:   {:.10e}  (start {:.10e}), {} variables",

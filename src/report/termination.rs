@@ -108,11 +108,14 @@ impl Termination {
         matches!(self, Self::Stationary { .. } | Self::StationaryUnconfirmed { .. })
     }
 
-    /// What to try next.
-    pub fn advice(&self) -> &'static str {
+    /// What to try next. `convex`: whether the problem was declared convex.
+    pub(super) fn advice(&self, convex: bool) -> &'static str {
         match self {
             Self::Stationary { .. } => "the certificate can be re-checked offline",
             Self::StationaryUnconfirmed { undecided: Some(_), .. } => "give typical sizes of the variables, or bounds",
+            Self::StationaryUnconfirmed { .. } if convex => {
+                "the cuts leave no bound: check that objective and constraints are convex, or start again from here"
+            }
             Self::StationaryUnconfirmed { .. } => {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
@@ -122,7 +125,11 @@ impl Termination {
                 "write the constraints so that their gradients do not vanish or oppose each other"
             }
             Self::NoiseLimit { .. } => {
-                "a more accurate oracle is needed to get further; where convexity is declared, check that the objective is convex"
+                if convex {
+                    "a more accurate oracle is needed to get further, or the objective is not convex"
+                } else {
+                    "a more accurate oracle is needed to get further"
+                }
             }
             Self::StepTooShort { .. } => "check the subgradients with `verify` at the best point",
             Self::EvaluationLimit => "allow more evaluations and continue",

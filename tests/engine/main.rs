@@ -23,6 +23,7 @@ mod linear_rows;
 mod linear_scaling;
 mod many_variables;
 mod parts;
+mod penalty;
 mod plateau;
 mod proposers;
 mod restart;

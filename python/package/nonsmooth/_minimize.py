@@ -103,7 +103,8 @@ def minimize(
     max_seconds : float, none
         Largest time.
     convex : bool, False
-        Whether the function is known to be convex. The run then bounds how far it is from the minimum (``gap``).
+        Whether the function and its nonlinear inequalities are known to be convex. The run then bounds how far it is from the minimum
+        (``gap``). Nonlinear equalities leave no such bound.
     first_step : float, chosen from x0
         Length of the first step.
     objective_scale : float, chosen from the values

@@ -30,7 +30,7 @@ _ADVICE = {
     "stationary": "result.recheck() computes the certificate again",
     "stationary_unconfirmed": "if the function is convex, options={'convex': True} lets the run prove that this is the minimum; otherwise "
     "start again from here, or from elsewhere, and compare",
-    "noise_limit": "a more accurate fun is needed to get further, or the function was declared convex and is not",
+    "noise_limit": "a more accurate fun is needed to get further",
     "step_too_short": "check the subgradients: nonsmooth.taylor_test(fun, x) compares them with values next to a point x",
     "evaluation_limit": "raise the option max_evaluations, and begin with x, or resume a journal",
     "iteration_limit": "raise the option max_iterations, and begin with x, or resume a journal",
@@ -39,6 +39,12 @@ _ADVICE = {
     "unbounded_below": "pass bounds",
     "function_failing": "make fun robust near x, or pass bounds or constraints that keep away from where it fails",
     "subproblem_failed": "pass x_scale, the typical sizes of the variables, and check the sizes of the rows of the constraints",
+}
+
+#: The same for problems that were declared convex.
+_ADVICE_IF_CONVEX = {
+    "stationary_unconfirmed": "check that the function and the constraints are convex, or start again from here",
+    "noise_limit": "a more accurate fun is needed to get further, or the function is not convex",
 }
 
 
@@ -194,8 +200,9 @@ def build(outcome, outer=None, nonlinear=None):
     counts = json.loads(outcome.counts)
     reason = outcome.reason
     history = History(json.loads(outcome.history))
+    advice = _ADVICE | _ADVICE_IF_CONVEX if outcome.convex else _ADVICE
     result = Result(
-        message=f"{outcome.message}; {_ADVICE.get(reason, outcome.advice)}",
+        message=f"{outcome.message}; {advice.get(reason, outcome.advice)}",
         success=outcome.confirmed,
         status=STATUS[reason],
         reason=reason,

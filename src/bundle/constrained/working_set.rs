@@ -42,6 +42,8 @@ pub(crate) struct WorkingSet {
     pub feasible: bool,
     /// Whether no direction reduces the violation.
     pub stationary: bool,
+    /// Whether the constraints are inequalities of which no linearization proves one nonconvex.
+    pub convex: bool,
 }
 
 /// A linearization as seen from the center, in σ.
@@ -119,6 +121,8 @@ impl WorkingSet {
             reduction: (violation - relaxation).max(0.0),
             feasible: excess <= 1.0 && !costly,
             stationary: stationary && excess > 1.0,
+            convex: !constraints.nonconvex().contains(&true)
+                && !constraints.kinds().contains(&ConstraintKind::SmoothEquality),
         }
     }
 }

@@ -77,10 +77,10 @@ impl Position<'_> {
         }
     }
 
-    /// Whether cuts bound Θ from below wherever they were taken: it is declared convex, and no nonlinear constraint,
-    /// which need not be convex, restricts it.
+    /// Whether cuts bound Θ on the feasible points from below wherever they were taken: the problem is declared convex,
+    /// and no nonlinear constraint contradicts that.
     pub(crate) fn is_convex(&self) -> bool {
-        self.config.convexity == Convexity::Convex && self.working.is_none()
+        self.config.convexity == Convexity::Convex && self.working.is_none_or(|working| working.convex)
     }
 
     /// Whether the center violates nonlinear constraints.

@@ -67,7 +67,7 @@ pub fn proof(report: &Report) -> String {
     let termination = &report.termination;
     match is_proved(report) {
         true => format!("Proved: {termination}"),
-        false => format!("Not proved: {termination}; {}", termination.advice()),
+        false => format!("Not proved: {termination}; {}", report.advice()),
     }
 }
 
