@@ -22,6 +22,10 @@ use crate::report::{Origin, Termination};
 const MAX_WEIGHTS: usize = 20;
 /// Factor of the promised decrease below which a tenth of the weight has brought nothing beside curvature.
 const SAME_DECREASE: f64 = 1.01;
+/// Evaluations that a run spends on the bound of a convex problem once its end is proved.
+const MAX_FOR_BOUND: usize = 4;
+/// Each of them promises this many times what rounding hides.
+const WORTHWHILE: f64 = 10.0;
 
 /// The composite model of a run.
 #[derive(Debug)]
@@ -36,6 +40,10 @@ pub(crate) struct Composite {
     /// Whether the pending trial point is a correction.
     correcting: bool,
     escape: Option<Escape>,
+    /// Bounds of a convex problem that were larger than what may be left, each of which took one more step.
+    bounds: Vec<f64>,
+    /// The proof that stands while such a step is evaluated.
+    proved: Option<(Ending, Base)>,
 }
 
 impl Composite {
@@ -48,6 +56,8 @@ impl Composite {
             rejected: None,
             correcting: false,
             escape: None,
+            bounds: vec![],
+            proved: None,
         }
     }
 
@@ -103,9 +113,15 @@ impl Composite {
             }
             let evidence = Evidence::new(at.state, at.set, &proposal);
             if let Verdict::End(termination) = verdict(at, &evidence) {
+                let tightens = self.tightens(at, &termination, &proposal);
                 let composite = Some(PointProof { base: base.clone(), step });
                 let proof = Some(Proof { proposal: proposal.clone(), composite });
-                return Ok(self.leave(at, Ending { termination, proof }, base));
+                let ending = Ending { termination, proof };
+                if tightens {
+                    self.proved = Some((ending, base.clone()));
+                    return Ok(Answer::trial(proposal));
+                }
+                return Ok(self.leave(at, ending, base));
             }
             weight /= 10.0;
             let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
@@ -123,6 +139,22 @@ impl Composite {
             last = promised;
         }
         Ok(Answer::Silent)
+    }
+
+    /// Whether one more step is taken to tighten the bound of a convex problem: the aggregate subgradient at a center
+    /// is of the order of the square root of its error, and the model converges fast.
+    fn tightens(&mut self, at: &Position<'_>, end: &Termination, proposal: &Proposal) -> bool {
+        let Termination::Stationary { gap: Some(gap), .. } = *end else { return false };
+        let falls = self.bounds.last().is_none_or(|last| gap <= 0.5 * last);
+        let large = gap > allowed(&at.resolution(), true);
+        let tightens = large
+            && falls
+            && self.bounds.len() < MAX_FOR_BOUND
+            && proposal.predicted_decrease > WORTHWHILE * at.state.rounding();
+        if tightens {
+            self.bounds.push(gap);
+        }
+        tightens
     }
 
     /// A step that promises little: the model may prove the point at its end stationary. Silent within a limit of
@@ -191,6 +223,9 @@ impl Composite {
             self.escape = escape;
             return Ok(answer);
         }
+        if let Some((ending, base)) = self.proved.take() {
+            return Ok(self.leave(at, ending, &base));
+        }
         let Some(base) = self.base.clone().filter(|_| self.trust.pass()) else { return Ok(Answer::Silent) };
         if let Some(rejected) = self.rejected.take() {
             if let Some(proposal) = self.correction(at, &base, &rejected)? {
@@ -246,7 +281,7 @@ impl Proposer for Composite {
             let curved = are_curved(outer, at.state.constraints.as_deref());
             self.steps.remember(outer, &trial.proposal.trial, (known, trial.constraints), curved);
         }
-        if self.escape.is_some() {
+        if self.escape.is_some() || self.proved.is_some() && !trial.serious {
             return;
         }
         if !trial.proposal.restores {
@@ -280,6 +315,7 @@ impl Proposer for Composite {
             }
         }
         if trial.serious {
+            self.proved = None;
             self.rebase(at, trial.linearization);
         }
     }
@@ -295,7 +331,7 @@ impl Proposer for Composite {
 
     fn recenter(&mut self, at: &mut Position<'_>, linearization: Option<&Linearization>) {
         // The center evaluated anew has outdated the proof.
-        self.escape = None;
+        (self.escape, self.proved) = (None, None);
         if let (Some(outer), Some(known)) = (at.outer, linearization) {
             let constraints = at.state.constraints.as_deref();
             let curved = are_curved(outer, constraints);
@@ -306,7 +342,8 @@ impl Proposer for Composite {
     }
 
     fn standing_proof(&mut self) -> Option<Ending> {
-        self.escape.take().map(|escape| escape.ending)
+        let escape = self.escape.take().map(|escape| escape.ending);
+        escape.or_else(|| self.proved.take().map(|(ending, _)| ending))
     }
 }
 
