@@ -194,3 +194,26 @@ fn the_lasso_fulfils_its_conditions_of_optimality() {
     assert!(largest <= 1e-4, "{largest:e}, {report}");
     assert!(report.solution.iter().filter(|x| x.abs() <= 1e-6).count() > 50, "{report}");
 }
+
+/// Chained Mifflin 2: Σ −x_i + 2 c_i + 1.75 |c_i| with c_i = x_i² + x_{i+1}² − 1, whose kinks are as many as the
+/// variables.
+#[test]
+fn many_kinks_take_few_evaluations_where_the_outputs_are_given() {
+    // Values of the literature.
+    let known = [(50, -34.795), (200, -140.86), (1000, -706.55)];
+    for (n, value) in known.into_iter().take(if is_study() { 3 } else { 1 }) {
+        let outer = SmoothPlus { weight: 1.75, outer: SumOfPowers { exponent: 1.0 } };
+        let theta = CompositeFunction::new(n, &outer, |x: &Vector| {
+            let circles = Vector::from_fn(n - 1, |i, _| x[i] * x[i] + x[i + 1] * x[i + 1] - 1.0);
+            let rows = Matrix::from_fn(n - 1, n, |i, j| if j == i || j == i + 1 { 2.0 * x[j] } else { 0.0 });
+            let kept = Vector::from_fn(n, |i, _| f64::from(u8::from(i < n - 1)));
+            let smooth = 2.0 * circles.sum() - kept.dot(x);
+            SmoothPlus::stack((smooth, &(rows.row_sum().transpose() * 2.0 - kept)), (&circles, &rows))
+        });
+        let config = BundleTrustConfig { convexity: Convexity::Convex, ..BundleTrustConfig::default() };
+        let report = BundleTrust::new(config).unwrap().minimize(&theta, Vector::from_element(n, -1.0)).unwrap();
+        println!("chained Mifflin 2, n = {n}: {} evaluations, {}", report.counts.evaluations, report.value);
+        assert!(report.termination.is_confirmed() && report.counts.evaluations <= 20, "n = {n}: {report}");
+        assert!((report.value - value).abs() <= 0.005, "n = {n}: {report}");
+    }
+}
