@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! numbers ─┬─ Map, Classes, Lines, LogPlot, Landscape, Convergence ─┬─ Figure ─┬─ svg
-//!          ├─ Solids, Surfaces, Sketch ───────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
+//!          ├─ Sketch ─────────────────────────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
 //!          └─ Space ─ SpaceView: a view in three dimensions, which the script of a page draws (assets/viewer.js)
 //! scale (ticks), chart (axes), panel_layout (panels), marks (legends), plan (meshes in a plane), levels (areas),
 //! view (projection), layers (what covers what), oblique (bodies), regions (borders of areas), canvas (SVG text), packing (numbers of a SpaceView)
@@ -33,16 +33,13 @@ mod oblique;
 mod packing;
 pub mod page;
 mod panel_layout;
-mod panels;
 mod plan;
 #[cfg(feature = "png")]
 mod png;
 mod regions;
 mod scale;
 mod sketch;
-mod solid;
 mod space;
-mod surfaces;
 mod view;
 
 pub use classes::{ClassPanel, Classes};
@@ -56,7 +53,5 @@ pub use log_plot::{LogPlot, Series};
 pub use map::{ColourScales, Map, MapPanel};
 pub use scale::{nice_below, number};
 pub use sketch::{Sign, Sketch, SketchBody, SketchMark};
-pub use solid::{SolidBody, SolidPanel, Solids};
 pub use space::{Space, SpaceBody, SpaceField, SpaceShape, SpaceState, SpaceView};
-pub use surfaces::{SurfacePanel, Surfaces};
 pub use view::View;

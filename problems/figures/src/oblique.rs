@@ -2,7 +2,6 @@
 
 use super::canvas::{Canvas, INK, Place, Stroke};
 use super::layers::Faces;
-use super::levels::{ColourScale, Field, fill};
 use super::regions::{area, borders, lines, ring, sides};
 use super::view::{Point, Projection, dot};
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,7 +12,7 @@ const MAX_MESHED_FACES: usize = 1500;
 const MIN_EDGE_ANGLE: f64 = 40.0_f64.to_radians();
 /// Twice the least area of a face that is drawn, square points.
 const MIN_AREA: f64 = 1e-6;
-/// Colour of skins without values.
+/// Colour of skins.
 const PLAIN: &str = "#e6e6e6";
 /// Lines between faces.
 const MESH: Stroke<'_> = Stroke { colour: "#4d4d4d", width: 0.35, dashed: false };
@@ -26,21 +25,18 @@ pub(super) struct Skin {
     pub points: Vec<Point>,
     /// Counterclockwise seen from outside.
     pub faces: Vec<Vec<usize>>,
-    /// One value per point; without, the skin is grey.
-    pub values: Option<Vec<f64>>,
     /// Whether faces that are turned away from the viewer are seen as well.
     pub two_sided: bool,
 }
 
 /// Skins one over the other; what is nearer covers the rest.
-pub(super) fn paint(canvas: &mut Canvas, projection: &Projection, skins: &[Skin], scale: &ColourScale) {
-    let (mut places, mut depths, mut values) = (Vec::new(), Vec::new(), Vec::new());
+pub(super) fn paint(canvas: &mut Canvas, projection: &Projection, skins: &[Skin]) {
+    let (mut places, mut depths) = (Vec::new(), Vec::new());
     let (mut faces, mut edges) = (Vec::new(), BTreeSet::new());
     for skin in skins {
         let first = places.len();
         places.extend(skin.points.iter().map(|&point| projection.place(point)));
         depths.extend(skin.points.iter().map(|&point| projection.depth(point)));
-        values.extend(skin.values.clone().unwrap_or_else(|| vec![f64::NAN; skin.points.len()]));
         let (seen, at_edges) = skin.seen(&places[first..]);
         faces.extend(seen.into_iter().map(|face| face.iter().map(|point| first + point).collect::<Vec<_>>()));
         edges.extend(at_edges.into_iter().map(|side| side.map(|point| first + point)));
@@ -56,10 +52,8 @@ pub(super) fn paint(canvas: &mut Canvas, projection: &Projection, skins: &[Skin]
         // Neighbours in higher layers will be drawn again: here they leave no seam.
         let higher = layers[number + 1..].iter().flatten().map(|&face| faces[face].clone());
         let filled = own.iter().cloned().chain(higher.filter(|face| face.iter().any(|&point| here[point])));
-        let (plain, coloured): (Vec<_>, Vec<_>) = filled.partition(|face| values[face[0]].is_nan());
-        let grey = borders(plain.iter().map(|face| ring(face, &places)));
-        canvas.area(PLAIN, grey.iter().map(Vec::as_slice));
-        fill(canvas, Field { places: &places, faces: &coloured, values: &values }, scale);
+        let outlines = borders(filled.map(|face| ring(&face, &places)));
+        canvas.area(PLAIN, outlines.iter().map(Vec::as_slice));
         let (edges, mesh): (Vec<_>, Vec<_>) = sides(&own).into_keys().partition(|side| edges.contains(side));
         if meshed {
             canvas.lines(&lines(&mesh, &places), MESH);
@@ -70,9 +64,9 @@ pub(super) fn paint(canvas: &mut Canvas, projection: &Projection, skins: &[Skin]
 
 impl Skin {
     /// The skin of a body; one that is open has two sides.
-    pub fn new(points: &[Point], faces: &[Vec<usize>], values: Option<Vec<f64>>) -> Self {
+    pub fn new(points: &[Point], faces: &[Vec<usize>]) -> Self {
         let two_sided = sides(faces).values().any(|faces| faces.len() == 1);
-        Self { points: points.to_vec(), faces: faces.to_vec(), values, two_sided }
+        Self { points: points.to_vec(), faces: faces.to_vec(), two_sided }
     }
 
     /// The faces that are seen if nothing covers them, and their sides that are edges or lie on the outline.

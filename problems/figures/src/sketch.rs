@@ -1,12 +1,10 @@
 //! Bodies in space with arrows and supports at them, and a legend with what these stand for.
 
-use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, TITLE_ROOM, text_width};
+use super::canvas::{Anchor, Canvas, INK, LABEL, Place, Stroke, TITLE, TITLE_ROOM, text_width};
 use super::colours::curve;
 use super::error::{FigureError, finite, mesh, some};
 use super::figure::Figure;
-use super::levels::ColourScale;
 use super::oblique::{Skin, paint};
-use super::panels::directions;
 use super::view::{Point, Projection, View};
 
 /// Bodies in space, with marks that letters join to their rows in the legend.
@@ -80,6 +78,8 @@ pub struct SketchMark {
 /// Larger side of the drawing of the bodies, points.
 const SIDE: f64 = 330.0;
 const MARGIN: f64 = 16.0;
+/// Length of an arrow of the axes, points.
+const ARROW: f64 = 30.0;
 /// Upper side of the drawing, points.
 const TOP: f64 = 44.0;
 /// Height of a row of the legend, points.
@@ -120,8 +120,8 @@ impl Sketch {
         let mut canvas = Canvas::new(width, (foot + 74.0).max(TOP + room + rows * ROW + MARGIN));
         canvas.text([MARGIN, 22.0], TITLE, &self.title);
         let marks = || self.marks.iter().enumerate();
-        let skins = self.bodies.iter().map(|body| Skin::new(&body.points, &body.faces, None)).collect::<Vec<Skin>>();
-        paint(&mut canvas, &projection, &skins, &ColourScale::new("", "", []));
+        let skins = self.bodies.iter().map(|body| Skin::new(&body.points, &body.faces)).collect::<Vec<Skin>>();
+        paint(&mut canvas, &projection, &skins);
         marks().for_each(|(index, mark)| mark.draw(&mut canvas, &projection, index));
         marks().for_each(|(index, mark)| mark.write_letter(&mut canvas, &projection, index));
         canvas.part([0.0, TITLE_ROOM], [right - 4.0, canvas.height]);
@@ -187,5 +187,33 @@ impl SketchMark {
         let length = away[0].hypot(away[1]);
         let away = if length > 0.0 { away.map(|part| part / length) } else { [0.0, -1.0] };
         canvas.rimmed([tail[0] + 10.0 * away[0], tail[1] + 10.0 * away[1]], LABEL, &letter(index));
+    }
+}
+
+/// Where the arrow of an axis ends, if it begins at 0.
+fn arrow_end(view: View, axis: usize) -> Place {
+    let unit = std::array::from_fn(|other| f64::from(u8::from(other == axis)));
+    Projection { view, origin: [0.0; 2], scale: ARROW }.place(unit)
+}
+
+/// Room at the left and at the right of the origin of the arrows that [`directions`] draws.
+fn axes_room(view: View, axes: &[String; 3]) -> [f64; 2] {
+    axes.iter().enumerate().fold([8.0, 2.0 * ARROW - 8.0], |[before, behind], (axis, label)| {
+        let (x, width) = (arrow_end(view, axis)[0], text_width(label, LABEL) + 5.0);
+        if x < -1.0 { [before.max(width - x), behind] } else { [before, behind.max(width + x + 16.0)] }
+    })
+}
+
+/// The directions of the three axes as arrows with labels, from some left side on; the arrows begin at a height.
+fn directions(canvas: &mut Canvas, view: View, axes: &[String; 3], [left, height]: Place) {
+    let origin = [left + axes_room(view, axes)[0], height];
+    for (axis, label) in axes.iter().enumerate() {
+        let [x, y] = arrow_end(view, axis);
+        let end = [origin[0] + x, origin[1] + y];
+        canvas.arrow([origin, end], Stroke::solid(INK, 1.0));
+        // The third axis points upwards.
+        let below = if axis == 2 { 2.0 } else { 0.34 * LABEL };
+        let (gap, anchor) = if x < -1.0 { (-5.0, Anchor::End) } else { (5.0, Anchor::Start) };
+        canvas.anchored([end[0] + gap, end[1] + below], LABEL, anchor, label);
     }
 }

@@ -1,8 +1,8 @@
 //! Meshes that cannot be drawn are refused with an error that names the place; meshes that are unusual are drawn.
 
 use figures::{
-    ClassPanel, Classes, ColourScales, Figure, FigureError, Map, MapPanel, Sketch, SketchBody, SolidBody, SolidPanel,
-    Solids, SurfacePanel, Surfaces, View, box_faces, grid_faces,
+    ClassPanel, Classes, ColourScales, Figure, FigureError, Map, MapPanel, Sketch, SketchBody, View, box_faces,
+    grid_faces,
 };
 
 type Faces = Vec<Vec<usize>>;
@@ -14,22 +14,6 @@ fn corners() -> Vec<[f64; 3]> {
 
 fn plane() -> Vec<[f64; 2]> {
     vec![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.0], [2.0, 1.0]]
-}
-
-fn solids(points: Vec<[f64; 3]>, faces: Faces, values: Vec<f64>) -> Drawn {
-    let good = SolidBody { points: corners(), faces: box_faces([2; 3]), values: vec![1.0; 8] };
-    let bodies = vec![good, SolidBody { points, faces, values }];
-    Solids {
-        name: "s".into(),
-        title: "t".into(),
-        quantity: "v".into(),
-        unit: String::new(),
-        axes: ["x".into(), "y".into(), "z".into()],
-        note: "n".into(),
-        view: View::default(),
-        panels: vec![SolidPanel { caption: "c".into(), bodies }],
-    }
-    .figure()
 }
 
 fn sketch(points: Vec<[f64; 3]>, faces: Faces) -> Drawn {
@@ -72,26 +56,12 @@ fn classes(points: Vec<[f64; 2]>, faces: Faces) -> Drawn {
     .figure()
 }
 
-fn surfaces(points: Vec<[f64; 2]>, faces: Faces) -> Drawn {
-    let points = points.into_iter().map(|[x, y]| [x, y, x * y]).collect();
-    Surfaces {
-        name: "s".into(),
-        title: "t".into(),
-        quantity: "h".into(),
-        unit: "mm".into(),
-        panels: vec![SurfacePanel { caption: "c".into(), points, faces }],
-    }
-    .figure()
-}
-
 /// All figures of one mesh, each with the words for its part.
-fn all(faces: &Faces) -> [(&'static str, Drawn); 5] {
+fn all(faces: &Faces) -> [(&'static str, Drawn); 3] {
     [
-        ("panel 0, body 1", solids(corners(), faces.clone(), vec![1.0; 8])),
         ("body 0", sketch(corners(), faces.clone())),
         ("panel 0", map(plane(), faces.clone(), vec![1.0; 6], true)),
         ("panel 0", classes(plane(), faces.clone())),
-        ("panel 0", surfaces(plane(), faces.clone())),
     ]
 }
 
@@ -120,30 +90,20 @@ fn numbers_that_cannot_be_drawn_are_refused_with_their_place() {
     for number in [f64::NAN, f64::INFINITY, 1e301] {
         let (mut points, mut flat, mut values) = (corners(), plane(), vec![1.0; 8]);
         (points[5][1], flat[4][0], values[3]) = (number, number, number);
-        let solid = words(solids(points.clone(), box_faces([2; 3]), vec![1.0; 8]));
-        assert!(solid.contains("panel 0, body 1, x₂ of point 5 is"), "{solid}");
-        let solid = words(solids(corners(), box_faces([2; 3]), values.clone()));
-        assert!(solid.contains("panel 0, body 1, value 3 is"), "{solid}");
         assert!(words(sketch(points, box_faces([2; 3]))).contains("body 0, x₂ of point 5 is"));
         values.truncate(6);
         let map_words = words(map(plane(), grid_faces([3, 2]), values, false));
         assert!(map_words.contains("panel 0, value 3 is"), "{map_words}");
-        for drawn in [classes(flat.clone(), grid_faces([3, 2])), surfaces(flat.clone(), grid_faces([3, 2]))] {
-            assert!(drawn.expect_err("refused").to_string().contains("panel 0, x"));
-        }
+        assert!(words(classes(flat, grid_faces([3, 2]))).contains("panel 0, x"));
     }
 }
 
 #[test]
 fn counts_that_differ_and_meshes_without_extent_are_refused() {
-    let few = solids(corners(), box_faces([2; 3]), vec![1.0; 7]).expect_err("refused");
-    assert_eq!(few.to_string(), "figure s: 7 values in panel 0, body 1, expected 8");
     let few = map(plane(), grid_faces([3, 2]), vec![1.0; 5], false);
     assert!(matches!(few, Err(FigureError::Count { expected: 6, found: 5, .. })));
     let flat: Vec<[f64; 2]> = plane().into_iter().map(|[x, _]| [x, 3.0]).collect();
-    for drawn in [classes(flat.clone(), grid_faces([3, 2])), surfaces(flat, grid_faces([3, 2]))] {
-        assert!(matches!(drawn, Err(FigureError::Number { index: 1, .. })));
-    }
+    assert!(matches!(classes(flat, grid_faces([3, 2])), Err(FigureError::Number { index: 1, .. })));
     // On one spot, and seen from the side.
     sketch(vec![[1.0; 3]; 8], box_faces([2; 3])).expect("a sketch of a spot");
 }

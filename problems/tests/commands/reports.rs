@@ -76,18 +76,11 @@ pub fn number(cell: &str) -> f64 {
     text.parse().unwrap_or_else(|_| panic!("{cell}"))
 }
 
-const SHAPES: [&str; 8] =
-    ["pressure", "pressure_own_scales", "pressure_cuts", "status", "von_mises", "surface", "surface_map", "sketch"];
+const SHAPES: [&str; 6] = ["pressure", "pressure_own_scales", "pressure_cuts", "status", "surface_map", "sketch"];
 
 /// Of a single shape: one scale is its own.
 fn alone() -> Vec<&'static str> {
     SHAPES.into_iter().filter(|name| *name != "pressure_own_scales").collect()
-}
-
-/// Of a single shape with two bodies of different materials.
-fn two_materials() -> Vec<&'static str> {
-    let others = alone().into_iter().filter(|name| *name != "von_mises");
-    others.chain(["von_mises_lower", "von_mises_upper"]).collect()
 }
 
 fn optimization() -> Vec<&'static str> {
@@ -259,7 +252,7 @@ fn an_evaluation_of_two_bodies_delivers_them_too() {
     let folder = kit::scratch();
     let scratch = folder.path();
     let result = run(scratch, "hertz3d", &["evaluate", "--mesh", "4", "--out", "state"]);
-    let page = check_page(scratch, "state", &two_materials());
+    let page = check_page(scratch, "state", &alone());
     let shown = number(&cells(&page, "objective Θ")[0]);
     assert!((shown / result["objective"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{shown}");
     let written = kit::read_json(&scratch.join("state/evaluation.json"));

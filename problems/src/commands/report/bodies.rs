@@ -1,90 +1,20 @@
-//! The figures of the bodies: stresses on the deformed bodies, relief of the contact surface.
+//! How bodies are drawn: their magnification, what is moved apart, and the relief of the contact surface.
 
 use crate::commands::numbers::number;
 use crate::commands::report::contact_surface::ContactSurface;
 use crate::commands::report::gallery::ShownShape;
-use crate::commands::report::skin::{Skin, extent};
-use crate::commands::scene_words;
+use crate::commands::report::skin::extent;
 use crate::commands::solved_shape::ContactObjective;
 use contact::equilibrium::ContactProblem;
-use contact::fields::{BodyFields, Fields};
+use contact::fields::BodyFields;
 use contact::scene::Scene;
 use contact::shape::Positions;
-use figures::{
-    ColourScales, Figure, FigureError, Map, MapPanel, SolidBody, SolidPanel, Solids, SurfacePanel, Surfaces, View,
-    nice_below,
-};
+use figures::{ColourScales, Figure, FigureError, Map, MapPanel, nice_below};
 
 /// Largest displacement that is drawn, as a share of the largest side of the bodies.
 const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
 /// Largest lift of bodies above others, as a share of their largest height.
 pub const MAX_LIFT: f64 = 0.25;
-
-/// Von Mises stresses on the deformed bodies, the shapes side by side on one scale: a figure of all bodies, or, where
-/// their materials differ, one per body. Shapes without fields are left out.
-pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Vec<Result<Figure, FigureError>> {
-    let problem = objective.solver().problem();
-    let bodies = &problem.bodies;
-    let all: Vec<usize> = (0..bodies.len()).collect();
-    if bodies.windows(2).all(|pair| pair[0].solid.materials() == pair[1].solid.materials()) {
-        return vec![stresses(objective, shapes, ("von_mises", "", &all))];
-    }
-    let alone = |&number: &usize| {
-        let name = format!("von_mises_{}", scene_words::stem(&problem.scene, number));
-        let words = format!(", {}", scene_words::body(&bodies[number].name));
-        stresses(objective, shapes, (&name, &words, &[number]))
-    };
-    all.iter().map(alone).collect()
-}
-
-/// The stresses of the bodies with these numbers.
-fn stresses(
-    objective: &ContactObjective,
-    shapes: &[ShownShape<'_>],
-    (name, words, numbers): (&str, &str, &[usize]),
-) -> Result<Figure, FigureError> {
-    let problem = objective.solver().problem();
-    let seen = || shapes.iter().filter_map(|shape| shape.fields.as_ref().map(|fields| (shape, fields)));
-    let bodies = || seen().flat_map(|(_, fields)| numbers.iter().map(|&number| &fields.bodies[number]));
-    let sides: [f64; 3] = std::array::from_fn(|axis| bodies().map(|body| side(body, axis)).fold(0.0, f64::max));
-    let times = magnification(bodies);
-    // A body that is shown alone covers nothing.
-    let surfaces = ContactSurface::all(problem);
-    let is_short = scene_words::is_short(&problem.scene);
-    let towards = |surface: &ContactSurface| if is_short { [0.0, 0.0, 1.0] } else { surface.normal };
-    let places = match numbers {
-        [_] => vec![[0.0; 3]; problem.bodies.len()],
-        _ => apart(&problem.scene, &surfaces, towards),
-    };
-    let moved =
-        seen().flat_map(|(_, fields)| fields.bodies.iter().zip(&places)).filter(|(_, place)| **place != [0.0; 3]);
-    let height = moved.map(|(body, _)| side(body, 2)).fold(0.0, f64::max);
-    let lift = if height > 0.0 { nice_below(MAX_LIFT * height) } else { 0.0 };
-    let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
-        caption: shape.caption.clone(),
-        bodies: numbers
-            .iter()
-            .map(|&number| solid(&fields.bodies[number], times, places[number].map(|part| lift * part)))
-            .collect(),
-    };
-    let lifted = match lift > 0.0 {
-        true if is_short => format!(", upper body lifted by {lift} mm"),
-        true => format!(", bodies drawn apart by {lift} mm"),
-        false => String::new(),
-    };
-    let [a, b, _] = sides.map(number);
-    Solids {
-        name: name.into(),
-        title: format!("{}: von Mises stress{words}", problem.scene.name),
-        quantity: "stress".into(),
-        unit: "MPa".into(),
-        axes: [format!("x₁ ({a} mm)"), format!("x₂ ({b} mm)"), "x₃".into()],
-        note: format!("displacements × {times}{lifted}"),
-        view: View::towards(surfaces.first().map_or([0.0, 0.0, 1.0], |surface| surface.normal)),
-        panels: seen().map(panel).collect(),
-    }
-    .figure()
-}
 
 /// The factor by which displacements of some bodies are drawn larger.
 pub fn magnification<'a, I: Iterator<Item = &'a BodyFields>>(bodies: impl Fn() -> I) -> f64 {
@@ -207,28 +137,6 @@ fn relief_of(relief: &Relief, shape: &ShownShape<'_>) -> Option<(String, Vec<f64
     Some(relief.captioned(&shape.caption, relief.outward_of(&body.positions)))
 }
 
-/// Relief of the contact surface side by side on one scale; shapes without fields are left out.
-pub fn surfaces(
-    objective: &ContactObjective,
-    relief: &Relief,
-    shapes: &[ShownShape<'_>],
-) -> Result<Figure, FigureError> {
-    let problem = objective.solver().problem();
-    let panel = |(caption, heights): (String, Vec<f64>)| SurfacePanel {
-        caption,
-        points: relief.surface.plan().into_iter().zip(heights).map(|([x1, x2], height)| [x1, x2, height]).collect(),
-        faces: relief.surface.faces(),
-    };
-    Surfaces {
-        name: format!("surface{}", relief.surface.suffix),
-        title: format!("{}: {}, without load", problem.scene.name, relief.surface.owner),
-        quantity: relief.quantity().into(),
-        unit: "mm".into(),
-        panels: shapes.iter().filter_map(|shape| relief_of(relief, shape)).map(panel).collect(),
-    }
-    .figure()
-}
-
 /// Relief of the contact surface seen along its normal, with lines of equal value.
 pub fn surface_map(
     objective: &ContactObjective,
@@ -255,18 +163,4 @@ pub fn surface_map(
 fn side(body: &BodyFields, axis: usize) -> f64 {
     let [least, most] = extent(body.positions.iter().copied(), axis);
     most - least
-}
-
-/// A body with its displacements magnified, moved by some mm.
-fn solid(body: &BodyFields, times: f64, moved: [f64; 3]) -> SolidBody {
-    let skin = Skin::new(&body.mesh);
-    let point = |&node: &u32| {
-        let (x, u) = (body.positions[node as usize], body.displacement[node as usize]);
-        std::array::from_fn(|axis| x[axis] + times * u[axis] + moved[axis])
-    };
-    SolidBody {
-        points: skin.nodes.iter().map(point).collect(),
-        values: skin.nodes.iter().map(|&node| body.nodal_von_mises[node as usize]).collect(),
-        faces: skin.faces,
-    }
 }

@@ -16,16 +16,8 @@ pub const STATUS: &str = "Open nodes carry no pressure. Sticking nodes hold by f
 
 pub const STATUS_WITHOUT_FRICTION: &str = "Open nodes carry no pressure, closed ones do.";
 
-pub const STRESS: &str = "Von Mises stress, averaged from cell centres to nodes, on the outside of the deformed bodies. Bodies of \
-    different materials have a picture and a colour scale each, since their strengths differ. The note below the picture says by how much \
-    displacements are magnified.";
-
-/// The surface in space.
-pub const SURFACE: &str = "The contact surface of the lower body without load: heights above their mean, or outward displacements by the \
-    shape. The note below the picture says by how much they are magnified.";
-
-pub const SURFACE_MAP: &str = "The same from above. The lines join points of equal values and carry them in mm; a ring marks the \
-    largest one.";
+pub const SURFACE_MAP: &str = "The contact surface without load, seen along its normal: heights above their mean, or outward displacements \
+    by the shape, in mm. The lines join points of equal values; a ring marks the largest one.";
 
 pub const COURSE: &str = "Every mark is an evaluation. Its shape says what became of it, its colour who proposed it. The line is the best \
     value so far. Values worse than the start do not stretch the axis: they stand at the upper edge with an arrow and their value. Where \

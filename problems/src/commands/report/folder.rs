@@ -132,12 +132,7 @@ impl<'a> ReportFolder<'a> {
         figures
             .extend(surfaces.iter().map(|surface| (gallery::cuts(objective, surface, shapes), cuts, captions::CUTS)));
         figures.extend(surfaces.iter().map(|surface| (gallery::status(objective, surface, shapes), what, status)));
-        let stress = "von Mises stress on the deformed bodies";
-        figures
-            .extend(bodies::von_mises(objective, shapes).into_iter().map(|figure| (figure, stress, captions::STRESS)));
         for relief in Relief::all(objective.solver().problem()) {
-            let space = "the shape of the contact surface in space";
-            figures.push((bodies::surfaces(objective, &relief, shapes), space, captions::SURFACE));
             let above = "the shape of the contact surface from above";
             figures.push((bodies::surface_map(objective, &relief, shapes), above, captions::SURFACE_MAP));
         }

@@ -10,7 +10,7 @@ use crate::commands::study::row::{Outcome, Picture, Row, Solved};
 use crate::commands::study::table::{StudyJson, row_folder, values};
 use crate::commands::study::varied::parts;
 use figures::page::{Block, File, Page, Section};
-use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
+use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel};
 
 /// Folder of the figures.
 const FIGURES: &str = "figures";
@@ -22,8 +22,8 @@ const PER_FIGURE: usize = 3;
 const CURVES: &str = "Every mark is a row that has a result. The axis begins at zero.";
 const PRESSURES: &str = "Contact pressure of each row over the plan of the contact surface; a ring marks the peak. The panels of one picture \
     have one scale.";
-const SURFACES: &str = "The contact surface of each row without load: heights counted from their mean, or displacements by a lattice. The panels of one picture have one \
-    scale.";
+const SURFACES: &str = "The contact surface of each row without load, seen along its normal: heights counted from their mean, or \
+    displacements by a lattice. The panels of one picture have one scale.";
 
 /// Writes table, figures and page of a study.
 pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> Result<(), Failure> {
@@ -131,12 +131,25 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
             if !picture.pressures.is_empty() {
                 let of = if owner.is_empty() { String::new() } else { format!(", {owner}") };
                 let name = format!("pressures_{number}{suffix}");
-                figures.push((pressures(name, title(&format!("contact pressure{of}")), index, rows)?, PRESSURES));
+                let plan = Plan {
+                    quantity: "pressure",
+                    unit: "MPa",
+                    contours: false,
+                    values: |picture| (&picture.pressures, ""),
+                };
+                figures.push((plan.figure(name, title(&format!("contact pressure{of}")), index, rows)?, PRESSURES));
             }
             if !picture.relief.is_empty() && (changes || rows[0].solved.optimization.is_some()) {
                 let owner = if owner.is_empty() { "contact surface of the lower body" } else { owner };
                 let name = format!("surfaces_{number}{suffix}");
-                figures.push((surfaces(name, title(owner), index, rows)?, SURFACES));
+                let plan = Plan {
+                    quantity: &picture.quantity,
+                    unit: "mm",
+                    contours: true,
+                    values: |picture| (&picture.relief, &picture.mean),
+                };
+                let title = title(&format!("{owner}, without load"));
+                figures.push((plan.figure(name, title, index, rows)?, SURFACES));
             }
         }
     }
@@ -198,43 +211,34 @@ fn caption(row: &Row) -> String {
     options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
 }
 
-/// The pressures of rows on the contact surface with this number.
-fn pressures(name: String, title: String, surface: usize, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
-    let panel = |Shown { row, solved }: &Shown<'_>| {
-        let Picture { plan, faces, pressures, .. } = solved.pictures().nth(surface)?;
-        let values = pressures.clone();
-        Some(MapPanel { caption: caption(row), points: plan.clone(), faces: faces.clone(), values })
-    };
-    let picture = rows.first().and_then(|shown| shown.solved.pictures().nth(surface));
-    let axes = picture.map_or_else(Default::default, |picture| picture.axes.clone());
-    Map {
-        name,
-        title,
-        quantity: "pressure".into(),
-        unit: "MPa".into(),
-        axes,
-        scales: ColourScales::Common,
-        contours: false,
-        panels: rows.iter().filter_map(panel).collect(),
-    }
-    .figure()
+/// What rows show on a contact surface: quantity, unit, and the values of a row with what its caption adds.
+struct Plan<'a> {
+    quantity: &'a str,
+    unit: &'a str,
+    contours: bool,
+    values: fn(&Picture) -> (&[f64], &str),
 }
 
-/// The relief of the contact surface with this number.
-fn surfaces(name: String, title: String, surface: usize, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
-    let panel = |Shown { row, solved }: &Shown<'_>| {
-        let Picture { plan, faces, mean, relief, .. } = solved.pictures().nth(surface)?;
-        let points = plan.iter().zip(relief).map(|([x1, x2], height)| [*x1, *x2, *height]);
-        Some(SurfacePanel { caption: caption(row) + mean, points: points.collect(), faces: faces.clone() })
-    };
-    let picture = rows.first().and_then(|shown| shown.solved.pictures().nth(surface));
-    let quantity = picture.map_or_else(String::new, |picture| picture.quantity.clone());
-    Surfaces {
-        name,
-        title: format!("{title}, without load"),
-        quantity,
-        unit: "mm".into(),
-        panels: rows.iter().filter_map(panel).collect(),
+impl Plan<'_> {
+    /// The values of rows on the contact surface with this number, seen along its normal.
+    fn figure(&self, name: String, title: String, surface: usize, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
+        let panel = |Shown { row, solved }: &Shown<'_>| {
+            let picture = solved.pictures().nth(surface)?;
+            let (values, words) = (self.values)(picture);
+            let (points, faces) = (picture.plan.clone(), picture.faces.clone());
+            Some(MapPanel { caption: caption(row) + words, points, faces, values: values.to_vec() })
+        };
+        let picture = rows.first().and_then(|shown| shown.solved.pictures().nth(surface));
+        Map {
+            name,
+            title,
+            quantity: self.quantity.into(),
+            unit: self.unit.into(),
+            axes: picture.map_or_else(Default::default, |picture| picture.axes.clone()),
+            scales: ColourScales::Common,
+            contours: self.contours,
+            panels: rows.iter().filter_map(panel).collect(),
+        }
+        .figure()
     }
-    .figure()
 }
