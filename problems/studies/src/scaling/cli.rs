@@ -1,7 +1,6 @@
 //! The command line of the study.
 
 use crate::scaling::cases::{Case, Extent, SceneName, Variant};
-use crate::scaling::model::{self, Network, Options};
 use crate::scaling::report::ScalingReport;
 use crate::scaling::{measure, table};
 use clap::Parser;
@@ -33,30 +32,6 @@ pub struct ScalingArguments {
     /// Clusters of about C³ subdomains, which share six rigid motions; several, with commas, are measured in turn.
     #[arg(long, value_name = "C", value_delimiter = ',', default_value = "1")]
     pub clusters: Vec<usize>,
-    /// Measure one core and predict time and memory of many ranks (Signorini, 7 bricks per edge of a subdomain); with
-    /// --case, of that case on 1, 2 and 4 ranks.
-    #[arg(long, conflicts_with_all = ["quick", "full", "variant", "clusters"])]
-    pub model: bool,
-    /// Latency of the network of the model, microseconds.
-    #[arg(long, value_name = "US", default_value_t = 2.0, value_parser = positive, requires = "model")]
-    pub latency: f64,
-    /// Bandwidth of a rank in the model, gigabytes per second.
-    #[arg(long, value_name = "GBS", default_value_t = 10.0, value_parser = positive, requires = "model")]
-    pub bandwidth: f64,
-    /// Subdomains per rank in the model.
-    #[arg(long, value_name = "N", default_value_t = 125, value_parser = clap::value_parser!(u16).range(1..), requires = "model", conflicts_with = "case")]
-    pub per_rank: u16,
-    /// Products of state and adjoint together in the model [default: those of a cold state to 1e-8 on 35/5].
-    #[arg(long, value_name = "N", value_parser = positive, requires = "model")]
-    pub products: Option<f64>,
-    /// Products with clusters over those without, in the model.
-    #[arg(long, value_name = "FACTOR", default_value_t = 2.3, value_parser = positive, requires = "model", conflicts_with = "case")]
-    pub cluster_products: f64,
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
-    value.ok_or_else(|| "a positive number is allowed".into())
 }
 
 impl ScalingArguments {
@@ -94,9 +69,6 @@ pub fn run() -> ExitCode {
 
 /// Measures what the arguments ask for; cases that fail are listed in the report.
 fn execute(arguments: &ScalingArguments) -> Result<String, Failure> {
-    if arguments.model {
-        return predict(arguments);
-    }
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
     let plan = arguments.plan().into_iter();
     let plan: Vec<(Case, Variant, usize)> =
@@ -120,17 +92,4 @@ fn execute(arguments: &ScalingArguments) -> Result<String, Failure> {
         return Ok(text);
     }
     Err(Failure::Incomplete { text, reason: report.failures.join("; "), status: 1 })
-}
-
-/// What the model says.
-fn predict(arguments: &ScalingArguments) -> Result<String, Failure> {
-    let options = Options {
-        network: Network { latency: 1e-6 * arguments.latency, bandwidth: 1e9 * arguments.bandwidth },
-        per_rank: arguments.per_rank.into(),
-        products: arguments.products,
-        cluster_products: arguments.cluster_products,
-        case: arguments.case,
-    };
-    let report = model::report(arguments.scene, &options)?;
-    if arguments.json { json(&report) } else { Ok(report.markdown()) }
 }

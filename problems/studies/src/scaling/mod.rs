@@ -3,7 +3,6 @@
 //! ```text
 //! cli ─ cases ─ measure, memory ─ ScalingRow
 //! rows ─ growth ─ ScalingReport ─ table (Markdown) or JSON
-//! model: figures of one core ─ predictions for many machines
 //! ```
 //! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object
 //! on stdout and nothing else there.
@@ -13,7 +12,6 @@ mod cli;
 mod growth;
 mod measure;
 mod memory;
-mod model;
 mod report;
 mod rows;
 mod table;
@@ -22,6 +20,5 @@ pub use cases::{Case, Extent, SceneName, Variant, option_name};
 pub use cli::{ScalingArguments, run};
 pub use growth::{CountGrowth, Growth};
 pub use memory::peak as peak_memory;
-pub use model::{Machine, ModelReport, Network, Prediction, Workload};
 pub use report::ScalingReport;
 pub use rows::{Adjoint, Sample, ScalingRow, Solve, Start};
