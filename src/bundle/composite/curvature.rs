@@ -31,11 +31,12 @@ impl Memory {
     }
 
     /// B at a point with its Jacobian, for weights of the outputs; none where no Jacobian at another point is known.
-    /// Outside of the space of all s_j and y_j, it is γ.
+    /// Outside of the space of all s_j and y_j, it is γ if it may have a mean. Beside constraints it has none: steps
+    /// along them say nothing about other directions.
     pub(super) fn curvature(
         &self,
         (point, jacobian): (&Vector, &Matrix),
-        weights: &Vector,
+        (weights, has_mean): (&Vector, bool),
         norm: &ScaledNorm,
     ) -> Option<Matrix> {
         let slope = jacobian.tr_mul(weights);
@@ -57,7 +58,7 @@ impl Memory {
         let (steps, changes) = (within(&steps), within(&changes));
         let (gram, mixed) = (&steps * steps.transpose(), &changes * steps.transpose());
         // With at most as many variables as Jacobians, the steps come to tell B in all directions.
-        let mean = if point.len() > MAX_JACOBIANS { (mixed.trace() / gram.trace()).max(0.0) } else { 0.0 };
+        let mean = if has_mean && point.len() > MAX_JACOBIANS { (mixed.trace() / gram.trace()).max(0.0) } else { 0.0 };
         let beyond_mean = beyond_mean(&gram, &mixed, mean)?;
         let mut whole = &basis * beyond_mean * basis.transpose();
         (0..whole.nrows()).for_each(|i| whole[(i, i)] += mean);

@@ -125,8 +125,10 @@ impl Composite {
             }
             weight /= 10.0;
             let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
-            // Curvature of the outputs holds a step whatever the weight is.
-            let same = if self.steps.needs_curvature { SAME_DECREASE } else { 1.0 };
+            // Curvature of the outputs holds a step whatever the weight is. Beside constraints, lighter weights may
+            // lead to others of them.
+            let held = self.steps.needs_curvature && at.state.constraints.is_none();
+            let same = if held { SAME_DECREASE } else { 1.0 };
             if raised || decided && promised <= same * last {
                 // No step that has not been rejected promises more. What is small already may be proved to be all that
                 // is left.

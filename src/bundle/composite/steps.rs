@@ -115,7 +115,7 @@ impl Steps {
         let mut step = None;
         for _ in 0..2 {
             let Some(weights) = &self.weights else { break };
-            let curvature = self.memory.curvature((&base.point, &all), weights, model.norm);
+            let curvature = self.memory.curvature((&base.point, &all), (weights, constraints.is_none()), model.norm);
             let found = CompositeModel { curvature: curvature.as_ref(), ..model }.solve(at.solver)?;
             self.weights = Some(weights_of(&found));
             step = Some(found);
