@@ -132,7 +132,7 @@
 //!   a failure, the lowest point evaluated; it is admissible. Θ was never evaluated outside U, up to the rounding that
 //!   [`Report::largest_violation`] states.
 //! * [`Report::termination`] says why the run ended, with numbers. Only [`Termination::Stationary`] calls the point a
-//!   confirmed stationary point; [`Termination::advice`] says what to try after each of the others.
+//!   confirmed stationary point; [`Report::advice`] says what to try after each of the others.
 //! * [`Report::certificate`] holds all cuts and multipliers of the last subproblem. [`Certificate::recheck`] computes
 //!   the aggregate subgradient z̃ and its error ẽ from them. For a convex Θ they bound what is left to gain: Θ(α) ≥
 //!   Θ(x̂) − ‖z̃‖‖α − x̂‖ − ẽ for all α ∈ U. For a nonconvex Θ they are a *local* statement about the model near x̂.
