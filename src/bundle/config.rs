@@ -16,7 +16,8 @@ pub enum Convexity {
     /// Θ is convex, and so is every nonlinear inequality. The cuts bound how far Θ can still fall within reach of the
     /// variables, this bound decides the end, and no restart is made. Linearization errors below zero by more than
     /// promised errors and rounding are noise of the oracle. Nonlinear equalities, and inequalities that their
-    /// linearizations prove nonconvex, leave no bound: the end is then decided as for unknown convexity.
+    /// linearizations prove nonconvex, leave no bound: the end is then decided as for unknown convexity. A false
+    /// declaration may give a false confirmation.
     Convex,
 }
 

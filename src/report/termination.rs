@@ -117,7 +117,7 @@ impl Termination {
                 "the cuts leave no bound: check that objective and constraints are convex, or start again from here"
             }
             Self::StationaryUnconfirmed { .. } => {
-                "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
+                "optimal if the problem is convex; otherwise start again from here, or from elsewhere, and compare"
             }
             Self::Infeasible { .. } => "start elsewhere, or relax the constraints",
             Self::Violated { .. } => "start elsewhere, and check the derivatives of the constraint",

@@ -165,11 +165,6 @@ impl TornModel {
         self.numbering.dof_count()
     }
 
-    /// Number of dofs of other processes that rows of this one need: values received per product with B.
-    pub fn ghost_count(&self) -> usize {
-        self.interface.torn_count() - self.interface.owned_count()
-    }
-
     /// The body and the piece of a subdomain of this process.
     pub fn piece(&self, index: usize) -> (&Body, &Piece) {
         let TornSubdomain { body, piece, .. } = &self.subdomains[index];
