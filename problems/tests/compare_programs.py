@@ -37,7 +37,7 @@ def read_scene(path, name):
     scene = tomllib.loads(Path(path).read_text())
     cases = {case["name"]: (case, f"shape_case_{number}") for number, case in enumerate(scene.get("case", []), 1)}
     case, files = cases[name] if cases else ({}, "shape")
-    return scene, scene["body"] | case.get("body", {}), np.array(case.get("offset", [0.0] * 3)), files
+    return scene, scene["body"][0] | case.get("body", [{}])[0], np.array(case.get("offset", [0.0] * 3)), files
 
 
 def read_mesh(path):
@@ -142,7 +142,7 @@ def lines(numbers, per_line):
 
 
 def write_deck(path, arguments, scene, body, points, cells, faces, places, forces, rigid):
-    material, contact = body["material"], scene["contact"]["face"]
+    material, contact = body["material"], scene["contact"][0]["slave"]["face"]
     count = len(points)
     deck = ["*NODE, NSET=BODY"]
     deck += [f"{i + 1}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(points)]
@@ -186,7 +186,7 @@ def measured(pid, clock):
 def solve_by_calculix(arguments, scene, body, offset, points, cells, faces, places, forces):
     """Displacements, stresses at the integration points, what was used, the contact force, and the largest pressure at a point."""
     deck = Path(arguments.work) / "deck.inp"
-    rigid = seat(scene["counter_surface"], offset, points[np.unique(faces[scene["contact"]["face"]])], arguments.facet)
+    rigid = seat(scene["contact"][0]["obstacle"], offset, points[np.unique(faces[scene["contact"][0]["slave"]["face"]])], arguments.facet)
     write_deck(deck, arguments, scene, body, points, cells, faces, places, forces, rigid)
     clock = time.time()
     with open(deck.with_suffix(".log"), "w") as log:
@@ -231,7 +231,7 @@ def run_getfem(scene, body, offset, points, cells, places, forces):
     for number, (name, pairs) in enumerate(places.items(), 1):
         regions[name] = number
         mesh.set_region(number, np.array([(cell, (3, 2, 0, 1)[face]) for cell, face in pairs]).T)
-    foot = regions[scene["contact"]["face"]]
+    foot = regions[scene["contact"][0]["slave"]["face"]]
 
     def field(degree, components):
         made = getfem.MeshFem(mesh, components)
@@ -253,7 +253,7 @@ def run_getfem(scene, body, offset, points, cells, places, forces):
     for support in body["supports"]:
         # The held faces of these scenes lie across the axis that they hold.
         model.add_normal_Dirichlet_condition_with_multipliers(finer, "u", 2, regions[support["face"]])
-    obstacle = scene["counter_surface"]
+    obstacle = scene["contact"][0]["obstacle"]
     axis, away = np.array(obstacle["axis"]), distances.basic_dof_nodes().T - np.array(obstacle["point"]) - offset
     away -= np.outer(away @ axis, axis) / (axis @ axis)
     model.add_initialized_fem_data("distance", distances, np.linalg.norm(away, axis=1) - obstacle["radius"])
@@ -348,7 +348,7 @@ def main():
     points, cells, faces = read_mesh(Path(arguments.scene).parent / body["mesh"])
     places = places_of(cells, faces)
     forces = nodal_forces(points, faces, body["loads"])
-    facets = faces[scene["contact"]["face"]]
+    facets = faces[scene["contact"][0]["slave"]["face"]]
     Path(arguments.work).mkdir(parents=True, exist_ok=True)
     solve = {"calculix": solve_by_calculix, "getfem": solve_by_getfem}[arguments.program]
     moved, stresses, used, force, peak = solve(arguments, scene, body, offset, points, cells, faces, places, forces)

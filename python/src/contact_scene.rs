@@ -23,7 +23,7 @@ use problems::commands::{look_page, raised, solved_page};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use scene_file::{AccuracyName, Case, FILES, MethodName, SceneFile, read_text};
+use scene_file::{AccuracyName, Case, FILES, MethodName, SceneFile, read_text, set_field};
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -76,16 +76,12 @@ pub fn new_scene(mesh: std::path::PathBuf) -> PyResult<std::path::PathBuf> {
     problems::commands::new_scene(&mesh).map_err(failed)
 }
 
-/// Replaces the fields of a table, whole tables included, as the option --set does; null removes one.
-fn replace(
-    table: &mut toml::Table,
-    fields: serde_json::Map<String, serde_json::Value>,
-) -> Result<(), toml::ser::Error> {
-    for (name, value) in fields {
-        match value {
-            serde_json::Value::Null => _ = table.remove(&name),
-            value => _ = table.insert(name, toml::Value::try_from(value)?),
-        }
+/// Sets fields of a table by their paths, whole tables included, as the option --set does; null removes one.
+fn replace(table: &mut toml::Table, fields: serde_json::Map<String, serde_json::Value>) -> PyResult<()> {
+    for (path, value) in fields {
+        let value = (!value.is_null()).then(|| toml::Value::try_from(value)).transpose();
+        let value = value.map_err(|error| PyValueError::new_err(format!("{path}: {error}")))?;
+        set_field(table, &path, value).map_err(input)?;
     }
     Ok(())
 }
@@ -103,18 +99,17 @@ impl ContactScene {
                 .map_err(|error| bad(&error))?,
             None => toml::Table::new(),
         };
-        replace(&mut table, serde_json::from_str(fields).map_err(|error| bad(&error))?).map_err(|error| bad(&error))?;
+        replace(&mut table, serde_json::from_str(fields).map_err(|error| bad(&error))?)?;
         let mesh = mesh.map(|mesh| mesh.mesh()).transpose()?;
         if mesh.is_some() {
-            if table.get("body").is_some_and(toml::Value::is_array) {
-                let allowed = "one mesh takes the place of the table [body]; bodies of a list have files";
-                return Err(input(SceneError::out_of_range("mesh", "given for a list of bodies", allowed)));
-            }
             let [.., name] = FILES;
-            let body = table.entry("body").or_insert_with(|| toml::Table::new().into());
-            if let toml::Value::Table(body) = body {
-                body.insert("mesh".into(), (*name).into());
-            }
+            let bodies = table.entry("body").or_insert_with(|| vec![toml::Table::new()].into());
+            let bodies = bodies.as_array_mut().map_or(&mut [][..], Vec::as_mut_slice);
+            let [toml::Value::Table(body)] = bodies else {
+                let allowed = "a scene of one body, whose mesh it is; several bodies have files";
+                return Err(input(SceneError::out_of_range("mesh", format!("{} bodies", bodies.len()), allowed)));
+            };
+            body.insert("mesh".into(), (*name).into());
         }
         let text = toml::to_string(&table).map_err(|error| bad(&error))?;
         let file = SceneFile::parse(&text, name).map_err(|error| PyValueError::new_err(error.to_string()))?;

@@ -16,7 +16,8 @@ from conftest import Interrupt, same_bits
 contact = pytest.importorskip("nonsmooth.contact", reason="built without the feature contact")
 
 SCENES = Path(__file__).parents[2] / "problems" / "scenes"
-SMALL = {"bricks": [4, 4, 4], "subdomains": [2, 2, 2]}
+SMALL = {"body[0].block.bricks": [4, 4, 4], "body[0].block.subdomains": [2, 2, 2]}
+BOTH_SMALL = {path.replace("0", str(body)): value for path, value in SMALL.items() for body in (0, 1)}
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +39,7 @@ def test_the_state_at_the_start_is_that_of_the_method_page(signorini):
 
 
 def test_the_gradient_passes_the_taylor_test():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     x = scene.start + 0.3 * np.cos(np.arange(36)).reshape(6, 6)
     assert nonsmooth.taylor_test(scene.fun, x.ravel(), disp=False).right
 
@@ -62,7 +63,7 @@ def test_optimize_ends_as_the_command_does(signorini):
     ],
 )
 def test_other_objectives_have_derivatives_and_optima(objective, unit):
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, objective=objective)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, objective=objective)
     start = scene.evaluate()
     assert start.unit == unit and start.root == 1
     assert nonsmooth.taylor_test(scene.fun, scene.start.ravel(), disp=False).right
@@ -71,7 +72,7 @@ def test_other_objectives_have_derivatives_and_optima(objective, unit):
 
 
 def test_the_same_scene_for_minimize_and_by_keywords():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, friction=0.0)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, friction=0.0)
     assert "friction = 0.0" in scene.to_toml()
     bounds, rows = scene.constraints
     result = nonsmooth.minimize(
@@ -81,8 +82,8 @@ def test_the_same_scene_for_minimize_and_by_keywords():
 
 
 def test_a_scene_weighs_nodes_by_their_area_unless_it_says_nodes(signorini):
-    nodes = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
-    area = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, objective={"weight": "area"})
+    nodes = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
+    area = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, objective={"weight": "area"})
     first, second = nodes.evaluate(), area.evaluate()
     assert (first.unit, second.unit) == ("MPa⁴", "MPa⁴·mm²")
     cells = np.full((5, 5), 625.0)
@@ -107,11 +108,13 @@ def test_results_have_the_warnings_of_the_commands():
         "material": {"young_modulus": 2.1e5, "poisson_ratio": 0.4999},
         "supports": [{"face": "bottom", "held": ["u1", "u2", "u3"]}],
         "loads": [{"face": "x1-max", "traction": [0.0, 0.0, -1.0]}],
+        "block": {"size": [20.0, 20.0], "bricks": [4, 4, 4]},
+        "surface": {"start": {"form": "plane", "height": 20.0}},
+        "admissible": {"minimum_height": 15.0, "slope": 1.0, "volume": [1000.0, 9000.0]},
     }
     scene = contact.Scene(
-        name="never touches", size=[20.0, 20.0], friction=0.3, mesh={"bricks": [4, 4, 4]}, lower=body,
-        counter_surface={"form": "plane", "height": 21.0}, surface={"start": {"form": "plane", "height": 20.0}},
-        admissible={"minimum_height": 15.0, "slope": 1.0, "volume": [1000.0, 9000.0]},
+        name="never touches", friction=0.3, body=[body],
+        contact=[{"slave": {"face": "top"}, "obstacle": {"form": "plane", "height": 21.0}}],
     )
     assert codes(scene.evaluate()) == {"no-contact", "volume-locking"}
     assert codes(scene.optimize()) == {"no-contact", "volume-locking", "flat-objective", "plateau"}
@@ -126,14 +129,14 @@ def test_heights_that_the_commands_refuse_are_refused(signorini):
 
 
 def test_a_shape_without_a_solution_is_outside_the_domain():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     # The surface lies below the base: elements are inverted.
     with pytest.raises(nonsmooth.OutsideDomain):
         scene.fun(np.full(36, -1.0))
 
 
 def test_a_run_is_resumed(tmp_path):
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     whole = scene.optimize()
     scene.optimize(journal=tmp_path, options={"max_evaluations": 3})
     assert same_bits(scene.optimize(resume=tmp_path).x, whole.x)
@@ -144,9 +147,10 @@ def test_a_run_is_resumed(tmp_path):
     [
         ({"frictio": 0.3}, "friction"),
         ({"friction": -0.3}, "friction = -0.3 is not allowed"),
-        ({"mesh": {"bricks": [0, 4, 4]}}, "mesh.bricks"),
+        ({"body[0].block.bricks": [0, 4, 4]}, r"body\[0\].block.bricks\[0\] = 0"),
         ({"friction": np.nan}, "friction = nan is not allowed"),
-        ({"surface": {"start": {"height": float("inf")}}}, "surface.start.height = inf"),
+        ({"body[0].surface.start.height": float("inf")}, r"body\[0\].surface.start.height = inf"),
+        ({"body[2].name": "third"}, "without gap"),
     ],
 )
 def test_bad_fields_are_named(fields, words):
@@ -159,8 +163,8 @@ def test_bad_shapes_and_missing_files_are_refused(signorini):
         contact.Scene.from_toml("nowhere.toml")
     with pytest.raises(ValueError, match="friction is missing"):
         contact.Scene.from_toml(SCENES / "signorini.toml", friction=None)
-    with pytest.raises(TypeError, match="mesh.bricks is NoneType.*leave out"):
-        contact.Scene.from_toml(SCENES / "signorini.toml", mesh={"bricks": None})
+    with pytest.raises(TypeError, match="objective.weight is NoneType.*leave out"):
+        contact.Scene.from_toml(SCENES / "signorini.toml", objective={"weight": None})
     with pytest.raises(ValueError, match=r"signorini.toml: there is no field `frictio`") as caught:
         contact.Scene.from_toml(SCENES / "signorini.toml", frictio=0.3)
     assert str(caught.value).count("signorini.toml") == 1
@@ -198,7 +202,7 @@ def test_an_interrupt_ends_a_state(interruptible):
 
 
 def test_scenes_go_to_other_processes():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, friction=0.1)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, friction=0.1)
     assert copy.deepcopy(scene).to_toml() == scene.to_toml()
     spawned = multiprocessing.get_context("spawn")
     answers = spawned.Queue()
@@ -211,7 +215,7 @@ def test_scenes_go_to_other_processes():
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
 def test_a_forked_process_says_that_it_cannot_solve():
     """The threads of the solver are not there: without a word, it would wait for them without end."""
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     scene.evaluate()
     with warnings.catch_warnings():
         # Newer versions of Python warn of a fork beside threads.
@@ -229,7 +233,7 @@ def test_a_forked_process_says_that_it_cannot_solve():
 def test_the_worst_of_some_cases_is_the_objective():
     cases = [{"name": "a"}, {"name": "b", "load_factor": 1.2, "weight": 0.4}, {"name": "c", "friction": 0.0}]
     limits = [{"quantity": "peak-pressure", "at_most": 5000.0, "case": "b"}, {"quantity": "stress", "at_most": 4000.0}]
-    scene = contact.Scene.from_toml(SCENES / "hertz.toml", mesh=SMALL, case=cases, limit=limits)
+    scene = contact.Scene.from_toml(SCENES / "hertz.toml", **BOTH_SMALL, case=cases, limit=limits)
     state = scene.evaluate()
     assert list(state.cases) == ["a", "b", "c"]
     weighted = {name: case["weighted_value"] for name, case in state.cases.items()}
@@ -257,11 +261,9 @@ def test_bodies_and_contacts_of_lists_are_told_apart():
     assert state.bodies["head"]["von_mises"].shape == (6 * 6 * 3,)
 
 
-def test_what_lists_of_bodies_do_not_take_is_refused():
-    with pytest.raises(ValueError, match="mesh = a value"):
-        contact.Scene.from_toml(SCENES / "hertz_bodies.toml", mesh=SMALL)
+def test_one_mesh_is_refused_for_several_bodies():
     corners = [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
-    with pytest.raises(ValueError, match="list of bodies"):
+    with pytest.raises(ValueError, match="mesh = 3 bodies"):
         contact.Scene.from_mesh(corners, [range(8)], {"head": [[4, 5, 6, 7]]}, SCENES / "stack.toml")
 
 
@@ -271,12 +273,12 @@ def test_facets_and_cells_of_arrays_count_once():
     def scene(cells, foot):
         return contact.Scene.from_mesh(
             corners, cells, {"foot": foot, "head": [[4, 5, 6, 7]], "side": [[0, 3, 7, 4]]},
-            name="one cell", friction=0.2, contact={"face": "head"},
-            body={"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
-                  "loads": [{"face": "foot", "pressure": 5.0}],
-                  "supports": [{"face": "side", "held": ["u1", "u2"]}]},
-            counter_surface={"form": "plane", "height": 10.5},
-            lattice={"control_points": [2, 2, 2], "displacement": [-1.0, 1.0]})
+            name="one cell", friction=0.2,
+            body=[{"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
+                   "loads": [{"face": "foot", "pressure": 5.0}],
+                   "supports": [{"face": "side", "held": ["u1", "u2"]}],
+                   "lattice": {"control_points": [2, 2, 2], "displacement": [-1.0, 1.0]}}],
+            contact=[{"slave": {"face": "head"}, "obstacle": {"form": "plane", "height": 10.5}}])
 
     once = scene([range(8)], [[0, 1, 2, 3]])
     twice = scene([range(8), [1, 2, 3, 0, 5, 6, 7, 4]], [[0, 1, 2, 3], [3, 0, 2, 1], [0, 1, 2, 3]])
@@ -287,7 +289,7 @@ def test_facets_and_cells_of_arrays_count_once():
 
 
 def test_a_scene_is_shown_before_and_after_its_solve(tmp_path):
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     page = scene.show()
     page.save(tmp_path / "scene.html")
     assert (tmp_path / "scene.html").read_text(encoding="utf-8") == page.html
@@ -333,7 +335,7 @@ LIMITED = {"friction": 0.1, "limit": [{"quantity": "peak-pressure", "at_most": 3
 
 
 def test_limits_are_constraints_with_gradients_for_other_optimizers():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, **LIMITED)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, **LIMITED)
     _bounds, (_rows, limits) = scene.constraints
     start = scene.start.ravel()
     direction = np.cos(np.arange(start.size))
@@ -346,14 +348,15 @@ def test_limits_are_constraints_with_gradients_for_other_optimizers():
 
 
 def test_the_violation_of_limits_is_told():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, limit=[{"quantity": "peak-pressure", "at_most": 100.0}])
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, limit=[{"quantity": "peak-pressure", "at_most": 100.0}])
     result = scene.optimize(options={"max_evaluations": 2})
     assert not result.success
     assert result.constr_violation == max(own["excess"] for own in result.limits) > 1.0
 
 
 def test_fields_replace_tables_and_none_removes():
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, counter_surface={"form": "plane", "height": 103.0})
+    path = "contact[0].obstacle"
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, **{path: {"form": "plane", "height": 103.0}})
     assert "\nfirst = " not in scene.to_toml()
-    with pytest.raises(ValueError, match="counter_surface"):
-        contact.Scene.from_toml(SCENES / "signorini.toml", counter_surface=None)
+    with pytest.raises(ValueError, match="a contact without its sides"):
+        contact.Scene.from_toml(SCENES / "signorini.toml", **{path: None})

@@ -1,13 +1,10 @@
 //! From a scene file to the scene and the settings of a run.
 
-use crate::either::Either;
-use crate::general::general_scene;
+use crate::conversion::{Parts, Sources, scene_of};
 use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
 use crate::mesh_file;
 use crate::region::check_body;
-use crate::scene_parts::{Parts, required};
-use crate::short_form::{block_scene, mesh_scene, named};
 use crate::{AccuracyName, MethodName, Objective, OptimizerSection, OutputSection, SceneFile};
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
@@ -66,42 +63,37 @@ impl Case {
     /// # Errors
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn new(file: &SceneFile, folder: &Path) -> Result<Self, SceneError> {
-        let parts = match &file.body {
-            Some(Either::Several(bodies)) => general_scene(file, bodies, folder)?,
-            Some(Either::One(body)) => {
-                mesh_scene(file, body, folder, || mesh_file::read(&folder.join(&body.mesh), body.unit))?
-            }
-            None => block_scene(file, folder)?,
-        };
-        Self::of_parts(file, folder, parts)
+        Self::of_sources(file, &Sources { folder, mesh: &|name, unit| mesh_file::read(&folder.join(name), unit) })
     }
 
-    /// As [`new`](Self::new), with a mesh in place of the file that `body.mesh` names.
+    /// As [`new`](Self::new), with a mesh in place of the file that the only body with a mesh names.
     ///
     /// # Errors
-    /// As [`new`](Self::new); cells are named by their tags.
+    /// As [`new`](Self::new); cells are named by their tags. [`SceneError::OutOfRange`] for several bodies with meshes
+    /// and for none.
     pub fn with_mesh(file: &SceneFile, folder: &Path, mesh: &GmshMesh) -> Result<Self, SceneError> {
-        let body = required("body", file.mesh_body(), "a table, for the body of the mesh")?;
-        let mesh = || mesh_file::convert(mesh, body.unit, &body.mesh);
-        Self::of_parts(file, folder, mesh_scene(file, body, folder, mesh)?)
+        let count = file.body.iter().filter(|body| body.mesh.is_some()).count();
+        if count != 1 {
+            return Err(SceneError::out_of_range("body", format!("{count} meshes"), "one body with a mesh"));
+        }
+        Self::of_sources(file, &Sources { folder, mesh: &|name, unit| mesh_file::convert(mesh, unit, name) })
     }
 
-    fn of_parts(file: &SceneFile, folder: &Path, parts: Parts) -> Result<Self, SceneError> {
-        let Parts { scene, start, notes } = parts;
-        scene.validate().map_err(|error| named(file, error))?;
+    fn of_sources(file: &SceneFile, sources: &Sources<'_>) -> Result<Self, SceneError> {
+        let (Parts { scene, start, notes }, folder) = (scene_of(file, sources)?, sources.folder);
+        scene.validate()?;
         check_continuation(&file.optimizer, !scene.is_of_blocks())?;
-        let (mut objective, mut limited) = (file.objective.clone(), file.limit.clone());
-        check_body("objective.region", objective.region.as_mut(), &scene)?;
-        for (index, limit) in limited.iter_mut().enumerate() {
-            check_body(&format!("limit[{index}].region"), limit.region.as_mut(), &scene)?;
+        check_body("objective.region", file.objective.region.as_ref(), &scene)?;
+        for (index, limit) in file.limit.iter().enumerate() {
+            check_body(&format!("limit[{index}].region"), limit.region.as_ref(), &scene)?;
         }
-        let objective = Objective::new(&objective, base(&scene), folder)?;
+        let objective = Objective::new(&file.objective, base(&scene), folder)?;
         if let (Objective::Deviation(wanted), Some((block, heights))) = (&objective, scene.shaped_block()) {
             let height = heights.start_height;
             wanted.at(&block.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
         let cases = cases(file, &scene)?;
-        let limits = limits(&limited, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
+        let limits = limits(&file.limit, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
         let limits = limits.into_iter().map(|limit| of_first_equal(limit, &cases)).collect::<Vec<_>>();
         let tolerance = file.optimizer.tolerance.unwrap_or_else(|| usual_tolerance(&limits));
         let method = method(&objective, file.optimizer.method, cases.len() > 1 || !limits.is_empty())?;
@@ -244,7 +236,7 @@ fn check_continuation(optimizer: &OptimizerSection, is_mesh: bool) -> Result<(),
     let meshes = &optimizer.continuation;
     if is_mesh && !meshes.is_empty() {
         let value = format!("{meshes:?}");
-        return Err(SceneError::out_of_range("optimizer.continuation", value, "[] with [body]: a mesh is one mesh"));
+        return Err(SceneError::out_of_range("optimizer.continuation", value, "[] with a mesh: a mesh is one mesh"));
     }
     if optimizer.starts > 1 && !meshes.is_empty() {
         return Err(SceneError::out_of_range("optimizer.starts", optimizer.starts, "1 with optimizer.continuation"));

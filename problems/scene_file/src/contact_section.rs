@@ -1,31 +1,66 @@
-//! Contact of a scene file: what touches, along which normals, over which areas, with which friction.
+//! Contacts of a scene file: what touches, along which normals, over which areas, with which friction.
 
-use contact::scene::{AreaKind, BodyFace, ContactScene, Master, NormalKind};
+use crate::ObstacleSection;
+use contact::scene::{AreaKind, FaceGeometry, NormalKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The contact of the lower body, or of the body of a mesh.
+/// A face of a body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FaceSection {
+    /// Name of the body. Default the only one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Name of its face.
+    pub face: String,
+}
+
+/// Two faces that may touch or are glued, or a face and a rigid obstacle: slave and master, faces, or slave and
+/// obstacle. Contact nodes, pressures and gaps belong to the slave.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ContactSection {
-    /// The face that may touch what is above it. Default "top" for blocks; required for a mesh.
+    /// The slave face. Default chosen among faces.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub face: Option<String>,
-    /// Along which normals contact acts: those of the counter surface at the points nearest to the contact nodes
-    /// (between two blocks the averaged ones of the lower block), or x3 as in the paper. Default "surface" with a rigid
-    /// obstacle, "x3" between two blocks.
+    pub slave: Option<FaceSection>,
+    /// The master face, on another body.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub normal: Option<NormalKind>,
-    /// How the areas of contact nodes are measured: on the surface itself, or projected along x3 as in the paper.
-    /// Default "projected" with contact.normal = "x3", else "surface".
+    pub master: Option<FaceSection>,
+    /// Two faces in place of slave and master: the slave is the face with the smaller product of Young's modulus and
+    /// mean width of the facets, the softer and finer side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faces: Option<[FaceSection; 2]>,
+    /// A rigid obstacle in place of a master face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<ObstacleSection>,
+    /// Whether the faces are glued as they lie, so that they neither slide nor part.
+    pub tied: bool,
+    /// Coulomb friction coefficient. Default that of the scene; none between glued faces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
+    pub friction: Option<f64>,
+    /// Along which normals contact acts: those of the obstacle at the points nearest to the contact nodes, between two
+    /// bodies the averaged ones of the slave face; or x3 as in the paper.
+    pub normal: NormalKind,
+    /// How areas on an obstacle are measured: on the surface itself, or projected along x3 as in the paper. Default
+    /// "projected" with normal = "x3", else "surface"; between bodies the mortar integrals measure them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaKind>,
-    /// How far the bodies are pressed into each other before loading: every gap is smaller by it. Negative: a
-    /// clearance. Default 0.
+    /// How far the sides are pressed into each other before loading: every gap is smaller by it. Negative: a clearance.
+    /// Default 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub interference: Option<f64>,
-    /// Other friction coefficients on parts of the face.
+    /// The gap at the start between two bodies, whatever their meshes say: later changes of the shape count. Negative:
+    /// an interference. Default: the faces tell the gaps. Not with interference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
+    pub clearance: Option<f64>,
+    /// What gaps between two bodies are measured between: "curved" surfaces, or the flat "facets" of the meshes for
+    /// comparison.
+    pub geometry: FaceGeometry,
+    /// Other friction coefficients on parts of the slave face.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<FrictionSection>,
 }
@@ -39,20 +74,4 @@ pub struct FrictionSection {
     /// Coulomb friction coefficient.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
     pub friction: f64,
-}
-
-impl ContactSection {
-    /// The contact of the first body of a scene, whose contact face has this name by default.
-    pub(crate) fn scene(&self, face: &str, friction: f64, master: Master) -> ContactScene {
-        let usual = if let Master::Body(_) = master { NormalKind::X3 } else { NormalKind::Surface };
-        let normal = self.normal.unwrap_or(usual);
-        let area = if normal == NormalKind::X3 { AreaKind::Projected } else { AreaKind::Surface };
-        ContactScene {
-            normal,
-            area: self.area.unwrap_or(area),
-            interference: self.interference.unwrap_or_default(),
-            friction_by_region: self.regions.iter().map(|part| (part.region.clone(), part.friction)).collect(),
-            ..ContactScene::new(BodyFace::new(0, self.face.as_deref().unwrap_or(face)), master, friction)
-        }
-    }
 }

@@ -188,10 +188,7 @@ impl<'a> Draft<'a> {
         line(&format!("name = {}", quoted(stem)));
         line("# Coulomb friction coefficient: dry steel on steel has about 0.15 to 0.3.");
         line("friction = 0.15\n");
-        line("[contact]");
-        line(&format!("# The face that may touch ({}).", guess(self.contact_is_named)));
-        line(&format!("face = {}\n", quoted(name)));
-        line("[body]");
+        line("[[body]]");
         line(&format!("mesh = {}", quoted(file)));
         line(match self.unit {
             UnitName::Mm => "# Lengths in the file are mm; unit = \"m\" and others are allowed.",
@@ -210,17 +207,20 @@ impl<'a> Draft<'a> {
         let force = self.direction.map(|part| rounded(STEEL[0] * PRESSURE * self.contact.area * part));
         let face = quoted(self.loaded.name);
         line(&format!("loads = [{{ face = {face}, force = {} }}]\n", vector(force)));
-        line("[counter_surface]");
-        line(&self.obstacle());
-        line("[lattice]");
+        line("[body.lattice]");
         line(&self.lattice());
+        line("[[contact]]");
+        line(&format!("# The face that may touch ({}).", guess(self.contact_is_named)));
+        line(&format!("slave = {{ face = {} }}\n", quoted(name)));
+        line("[contact.obstacle]");
+        line(&self.obstacle());
         line("# What is minimised; peak-pressure, stress-norm and others are in docs/scenes.md.");
         line("[objective]\nmeasure = \"pressure-norm\"\n");
         line("# No more volume than at the start.");
         line("[[limit]]\nquantity = \"relative-volume\"\nat_most = 1.0\n");
         line("# A second load case:");
         line(&format!(
-            "# [[case]]\n# name = \"first\"\n#\n# [[case]]\n# name = \"second\"\n# body = {{ loads = [{{ face = {face}, force = {} }}] }}",
+            "# [[case]]\n# name = \"first\"\n#\n# [[case]]\n# name = \"second\"\n# body = [{{ loads = [{{ face = {face}, force = {} }}] }}]",
             vector(force.map(|part| 2.0 * part))
         ));
         text

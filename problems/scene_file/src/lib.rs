@@ -8,55 +8,46 @@
 
 mod allowed;
 mod bodies;
-mod by_name;
 mod case;
 mod check;
 mod contact_section;
+mod conversion;
 mod draft;
-mod either;
-mod general;
 mod grid_file;
 mod lattice;
 mod limit;
 mod load_case;
+mod loading;
 mod mesh_check;
 mod mesh_file;
 mod objective;
-mod parts;
 mod print;
 mod region;
-mod scene_parts;
 mod schema;
 mod setting;
 mod settings;
 mod shapes;
-mod short_form;
 mod surfaces;
 mod table;
 mod text;
 mod wanted_pressure;
 
 pub use allowed::choices;
-pub use bodies::{
-    BodySection, Component, LoadSection, MaterialSection, MeshBodySection, SupportSection, UnitName, UpperSection,
-    VolumeMaterialSection,
-};
+pub use bodies::{BlockSection, BodySection, default_subdomains};
 pub use case::Case;
-pub use contact_section::{ContactSection, FrictionSection};
+pub use contact_section::{ContactSection, FaceSection, FrictionSection};
 pub use draft::draft;
-pub use either::Either;
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::{LimitSection, QuantityName};
-pub use load_case::{CaseBodySection, CasePartSection, CaseScene, CaseSection};
+pub use load_case::{CaseBodySection, CaseScene, CaseSection};
+pub use loading::{Component, LoadSection, MaterialSection, SupportSection, UnitName, VolumeMaterialSection};
 pub use objective::{AxisName, MeasureName, Objective, ObjectiveSection, WantedSection};
-pub use parts::{BlockSection, FaceSection, PairSection, PartSection};
 pub use region::RegionSection;
 pub use schema::schema;
-pub use setting::{Setting, check_path};
-pub use settings::{AccuracyName, MeshSection, MethodName, OptimizerSection, OutputSection, SolverSection};
-pub use short_form::default_subdomains;
-pub use surfaces::{AdmissibleSection, CounterSection, FairnessSection, SplineName, StartSection, SurfaceSection};
-pub use table::field_table;
+pub use setting::{Setting, check_path, set_field};
+pub use settings::{AccuracyName, MethodName, OptimizerSection, OutputSection, SolverSection};
+pub use surfaces::{AdmissibleSection, FairnessSection, ObstacleSection, SplineName, StartSection, SurfaceSection};
+pub use table::field_tables;
 pub use text::read_text;
 pub use wanted_pressure::WantedPressure;
 
@@ -66,55 +57,25 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Names of copies of the files of a scene, beside a copy of its own.
-pub const FILES: [&str; 4] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv", "body.msh"];
+pub const FILES: [&str; 4] = ["obstacle.csv", "start.csv", "wanted_pressure.csv", "body.msh"];
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// A contact shape optimization problem: elastic bodies, some of them with a shape that is optimized, and what they
-/// touch. Units: N, mm, MPa. Any number of bodies and of contacts are lists (`[[body]]`, `[[contact]]`). Scenes of one
-/// optimized body have a short form: a block of bricks with an optimized top, over the base spanned by x1, x2 and
-/// standing on x3 = 0 (size, lower, surface, admissible), or a mesh with a lattice of control points (`[body]`,
-/// lattice), below a rigid obstacle or, of blocks, below a second elastic one (counter_surface, upper).
+/// touch. Units: N, mm, MPa.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Name for reports.
     pub name: String,
-    /// Lengths a, b of the base of blocks along x1, x2. Default none: required for blocks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
-    pub size: Option<[f64; 2]>,
     /// Coulomb friction coefficient of all contacts that have none of their own.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
     pub friction: f64,
-    /// What touches, along which normals: a table in the short form, else a list of pairs of faces.
-    #[serde(default)]
-    pub contact: Either<ContactSection, PairSection>,
-    /// Bricks of blocks and tearing into subdomains, the same for both blocks.
-    #[serde(default)]
-    pub mesh: MeshSection,
-    /// The body as a mesh, in place of blocks; or, as a list, all bodies.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub body: Option<Either<MeshBodySection, PartSection>>,
-    /// The block whose upper surface is optimized.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lower: Option<BodySection>,
-    /// The elastic block above; left out for a rigid obstacle.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub upper: Option<UpperSection>,
-    /// The rigid obstacle, or the lower surface of the upper body. Required in the short form.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub counter_surface: Option<CounterSection>,
-    /// The optimized surface of a block: its spline and its start.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub surface: Option<SurfaceSection>,
-    /// The admissible set of control heights of a block; they also stay below the counter surface.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub admissible: Option<AdmissibleSection>,
-    /// The shapes of a mesh.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lattice: Option<LatticeSection>,
+    /// The bodies.
+    pub body: Vec<BodySection>,
+    /// What touches what.
+    pub contact: Vec<ContactSection>,
     /// What is minimised.
     #[serde(default)]
     pub objective: ObjectiveSection,
@@ -148,11 +109,13 @@ pub fn is_copy(name: &str) -> bool {
     })
 }
 
-/// The name of the copy of a file of one of several bodies or contacts, such as `body-1.msh`.
-fn numbered(name: &str, index: usize, face: &str) -> String {
+/// The name of the copy of a file of one of several bodies or contacts, such as `body-1.msh`; that of the only one has
+/// no number.
+fn numbered(name: &str, index: usize, count: usize, face: &str) -> String {
     let (stem, end) = name.rsplit_once('.').unwrap_or((name, ""));
     let face = if face.is_empty() { String::new() } else { format!("-{face}") };
-    format!("{stem}{face}-{index}.{end}")
+    let number = if count == 1 { String::new() } else { format!("-{index}") };
+    format!("{stem}{face}{number}.{end}")
 }
 
 impl SceneFile {
@@ -181,58 +144,36 @@ impl SceneFile {
 
     /// The files that the scene names, each with the name of its copy beside a copy of the scene.
     pub fn files_mut(&mut self) -> Vec<(String, &mut String)> {
-        let [counter, start, wanted, mesh] = FILES.map(str::to_owned);
+        let [obstacle, start, wanted, mesh] = FILES;
+        let Self { body: bodies, contact: contacts, .. } = self;
         let mut files = Vec::new();
-        if let Some(CounterSection::Grid { file, .. }) = &mut self.counter_surface {
-            files.push((counter.clone(), file));
-        }
-        if let Some(StartSection::Grid { file }) = self.surface.as_mut().map(|surface| &mut surface.start) {
-            files.push((start.clone(), file));
-        }
         if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
-            files.push((wanted, file));
+            files.push((wanted.to_owned(), file));
         }
-        let Self { body, contact, .. } = self;
-        match body {
-            Some(Either::One(section)) => files.push((mesh, &mut section.mesh)),
-            Some(Either::Several(sections)) => {
-                for (index, section) in sections.iter_mut().enumerate() {
-                    files.extend(section.mesh.as_mut().map(|file| (numbered(&mesh, index, ""), file)));
-                    if let Some(StartSection::Grid { file }) = section.surface.as_mut().map(|own| &mut own.start) {
-                        files.push((numbered(&start, index, ""), file));
-                    }
-                    let faces = section
-                        .block
-                        .iter_mut()
-                        .flat_map(|block| [("bottom", &mut block.bottom), ("top", &mut block.top)]);
-                    for (name, face) in faces {
-                        if let Some(CounterSection::Grid { file, .. }) = face {
-                            files.push((numbered(&start, index, name), file));
-                        }
-                    }
+        let count = bodies.len();
+        for (index, body) in bodies.iter_mut().enumerate() {
+            files.extend(body.mesh.as_mut().map(|file| (numbered(mesh, index, count, ""), file)));
+            if let Some(StartSection::Grid { file }) = body.surface.as_mut().map(|surface| &mut surface.start) {
+                files.push((numbered(start, index, count, ""), file));
+            }
+            let faces =
+                body.block.iter_mut().flat_map(|block| [("bottom", &mut block.bottom), ("top", &mut block.top)]);
+            for (name, face) in faces {
+                if let Some(ObstacleSection::Grid { file, .. }) = face {
+                    files.push((numbered(start, index, count, name), file));
                 }
             }
-            None => {}
         }
-        for (index, pair) in contact.several_mut().iter_mut().enumerate() {
-            if let Some(CounterSection::Grid { file, .. }) = &mut pair.obstacle {
-                files.push((numbered(&counter, index, ""), file));
+        let count = contacts.len();
+        for (index, contact) in contacts.iter_mut().enumerate() {
+            if let Some(ObstacleSection::Grid { file, .. }) = &mut contact.obstacle {
+                files.push((numbered(obstacle, index, count, ""), file));
             }
         }
         files
     }
 
-    /// The bodies of a list.
-    pub fn parts(&self) -> &[PartSection] {
-        self.body.as_ref().map_or(&[], Either::several)
-    }
-
-    /// The only body, where it is a mesh.
-    pub fn mesh_body(&self) -> Option<&MeshBodySection> {
-        self.body.as_ref().and_then(Either::one)
-    }
-
-    /// The value of the field at a path such as `mesh.bricks` or `body[0].unit`, as it stands in a file; for a field
+    /// The value of the field at a path such as `solver.kind` or `body[0].unit`, as it stands in a file; for a field
     /// that is not set, what its documentation says of that.
     pub fn value(&self, path: &str) -> String {
         let table = toml::Table::try_from(self).unwrap_or_default();

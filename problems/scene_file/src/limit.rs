@@ -18,7 +18,7 @@ const DEFAULT_EXPONENT: f64 = 8.0;
 pub struct LimitSection {
     /// What is limited: the largest contact pressure (MPa); the loaded area ∫min(σ/σ₀, 1)dA (mm²); the largest von
     /// Mises stress or its p-norm in a region (MPa); the largest displacement of a region (mm); the compliance (N mm);
-    /// the volume of the lower body (mm³), or the volume over that at the start.
+    /// the volume of the shaped bodies (mm³), or that volume over the one at the start.
     pub quantity: QuantityName,
     /// Its largest value, in its unit. Default none.
     #[serde(default, skip_serializing_if = "Option::is_none")]

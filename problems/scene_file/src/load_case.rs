@@ -1,13 +1,11 @@
 //! Load cases of a scene file: what of the scene is different in each.
 
-use crate::bodies::{LoadSection, MaterialSection, SupportSection};
-use crate::either::Either;
-use crate::short_form::named;
-use crate::{SceneFile, bodies};
+use crate::SceneFile;
+use crate::loading::{self, LoadSection, MaterialSection, SupportSection};
 use contact::error::SceneError;
 use contact::load_cases::Over;
 use contact::names::find;
-use contact::scene::{BodyScene, Geometry, Master, Scene};
+use contact::scene::{BodyScene, Master, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,28 +32,22 @@ pub struct CaseSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub interference: Option<f64>,
-    /// By how much obstacles are moved along x1, x2, x3; in the short form, the counter surface, and the top of an
-    /// upper body with it along x3. Default not at all.
+    /// By how much obstacles are moved along x1, x2, x3. Default not at all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub offset: Option<[f64; 3]>,
-    /// What differs at the lower block.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lower: Option<CaseBodySection>,
-    /// What differs at the upper block.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub upper: Option<CaseBodySection>,
-    /// What differs at the body of a mesh; or, as a list, at bodies by their names.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub body: Option<Either<CaseBodySection, CasePartSection>>,
+    /// What differs at bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub body: Vec<CaseBodySection>,
 }
 
-/// One of several bodies in a load case: what is given replaces that of the scene.
+/// A body in a load case: what is given replaces that of the scene.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CasePartSection {
-    /// The body.
-    pub name: String,
+pub struct CaseBodySection {
+    /// The body. Default the only one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// Elastic constants. Default those of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSection>,
@@ -71,21 +63,6 @@ pub struct CasePartSection {
     pub offset: Option<[f64; 3]>,
 }
 
-/// A body in a load case: what is given replaces that of the scene.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CaseBodySection {
-    /// Elastic constants. Default those of the scene.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub material: Option<MaterialSection>,
-    /// Held faces, all of them. Default those of the scene.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub supports: Option<Vec<SupportSection>>,
-    /// The loads, all of them. Default those of the scene.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub loads: Option<Vec<LoadSection>>,
-}
-
 /// A load case as a scene of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseScene {
@@ -99,50 +76,24 @@ pub struct CaseScene {
     pub scene: Scene,
 }
 
-/// What a case says of a body.
-#[derive(Debug, Clone, Copy, Default)]
-struct Changed<'a> {
-    material: Option<&'a MaterialSection>,
-    supports: Option<&'a [SupportSection]>,
-    loads: Option<&'a [LoadSection]>,
-    offset: Option<[f64; 3]>,
-}
-
-impl<'a> Changed<'a> {
-    fn of(section: &'a CaseBodySection) -> Self {
-        let CaseBodySection { material, supports, loads } = section;
-        let (supports, loads) = (supports.as_deref(), loads.as_deref());
-        Self { material: material.as_ref(), supports, loads, offset: None }
-    }
-
-    fn of_part(section: &'a CasePartSection) -> Self {
-        let CasePartSection { material, supports, loads, offset, .. } = section;
-        let (supports, loads) = (supports.as_deref(), loads.as_deref());
-        Self { material: material.as_ref(), supports, loads, offset: *offset }
-    }
-
-    fn is_empty(&self) -> bool {
-        self.material.is_none() && self.supports.is_none() && self.loads.is_none() && self.offset.is_none()
-    }
-
-    /// Changes a body of the scene; `place`: the table of the case.
-    fn apply(&self, place: &str, body: &mut BodyScene) -> Result<(), SceneError> {
-        if self.is_empty() {
-            return Err(SceneError::out_of_range(place, "an empty table", "material, supports or loads of the case"));
+impl CaseBodySection {
+    /// Changes a body of the scene; `at`: the place of the section in the file.
+    fn apply(&self, at: &str, body: &mut BodyScene) -> Result<(), SceneError> {
+        let Self { material, supports, loads, offset, .. } = self;
+        if material.is_none() && supports.is_none() && loads.is_none() && offset.is_none() {
+            let allowed = "material, supports, loads or offset of the case";
+            return Err(SceneError::out_of_range(at, "an empty table", allowed));
         }
-        // What the case does not say of the body comes from the scene.
-        let name = std::mem::replace(&mut body.name, place.to_owned());
-        if let Some(material) = self.material {
+        if let Some(material) = material {
             body.material = material.material()?;
         }
-        if let Some(supports) = self.supports {
-            body.supports = bodies::supports(place, supports)?;
+        if let Some(supports) = supports {
+            body.supports = loading::supports(at, supports)?;
         }
-        if let Some(loads) = self.loads {
-            body.loads = bodies::loads(place, loads)?;
+        if let Some(loads) = loads {
+            body.loads = loading::loads(at, loads)?;
         }
-        body.name = name;
-        if let Some(offset) = self.offset {
+        if let Some(offset) = *offset {
             *body = body.clone().moved(offset)?;
         }
         Ok(())
@@ -151,27 +102,20 @@ impl<'a> Changed<'a> {
 
 impl CaseSection {
     /// The scene of the case, by its number in the file.
-    fn scene(&self, index: usize, file: &SceneFile, base: &Scene) -> Result<Scene, SceneError> {
+    fn scene(&self, index: usize, base: &Scene) -> Result<Scene, SceneError> {
         let mut scene = base.clone();
-        let place = |name: &str| format!("case[{index}].{name}");
-        let tables = [
-            ("lower", self.lower.as_ref()),
-            ("upper", self.upper.as_ref()),
-            ("body", self.body.as_ref().and_then(Either::one)),
-        ];
-        for (name, section) in tables {
-            let Some(section) = section else { continue };
-            let known = file.parts().is_empty();
-            let Some(body) = scene.bodies.iter_mut().find(|body| known && body.name == name) else {
-                return Err(SceneError::out_of_range(place(name), "a table", "only a body of the scene"));
-            };
-            Changed::of(section).apply(&place(name), body)?;
-        }
-        for (number, section) in self.body.as_ref().map_or(&[][..], Either::several).iter().enumerate() {
-            let at = place(&format!("body[{number}]"));
+        for (number, section) in self.body.iter().enumerate() {
+            let at = format!("case[{index}].body[{number}]");
             let names = scene.bodies.iter().map(|body| body.name.as_str());
-            let body = find(&format!("{at}.name"), &section.name, names)?;
-            Changed::of_part(section).apply(&at, &mut scene.bodies[body])?;
+            let body = match &section.name {
+                Some(name) => find(&format!("{at}.name"), name, names)?,
+                None if scene.bodies.len() == 1 => 0,
+                None => {
+                    let allowed = format!("one of {}", names.collect::<Vec<_>>().join(", "));
+                    return Err(SceneError::out_of_range(format!("{at}.name"), "missing", allowed));
+                }
+            };
+            section.apply(&at, &mut scene.bodies[body])?;
         }
         if let Some(factor) = self.load_factor {
             for body in &mut scene.bodies {
@@ -183,24 +127,15 @@ impl CaseSection {
             contact.interference = self.interference.unwrap_or(contact.interference);
         }
         if let Some(offset) = self.offset {
-            self.move_counter_surfaces(offset, &mut scene);
-        }
-        let within = |source| SceneError::InFile { file: format!("case \"{}\"", self.name), source: Box::new(source) };
-        scene.validate().map_err(|error| within(named(file, error)))?;
-        Ok(scene)
-    }
-
-    /// Moves all obstacles; of the short form, an upper block with its counter surface.
-    fn move_counter_surfaces(&self, offset: [f64; 3], scene: &mut Scene) {
-        for contact in &mut scene.contacts {
-            if let Master::Obstacle(surface) = &mut contact.master {
-                *surface = surface.moved(offset);
+            for contact in &mut scene.contacts {
+                if let Master::Obstacle(surface) = &mut contact.master {
+                    *surface = surface.moved(offset);
+                }
             }
         }
-        let upper = scene.bodies.iter_mut().find(|body| body.name == "upper");
-        if let Some(Geometry::Block(block)) = upper.map(|body| &mut body.geometry) {
-            (block.bottom, block.top) = (block.bottom.moved(offset), block.top.moved([0.0, 0.0, offset[2]]));
-        }
+        let within = |source| SceneError::InFile { file: format!("case \"{}\"", self.name), source: Box::new(source) };
+        scene.validate().map_err(within)?;
+        Ok(scene)
     }
 }
 
@@ -224,7 +159,7 @@ pub(crate) fn cases(file: &SceneFile, base: &Scene) -> Result<Vec<CaseScene>, Sc
         if file.case[..index].iter().any(|other| other.name.trim() == name) {
             return refused("a name that no other case has");
         }
-        let (scene, weight) = (section.scene(index, file, base)?, section.weight.unwrap_or(1.0));
+        let (scene, weight) = (section.scene(index, base)?, section.weight.unwrap_or(1.0));
         match cases.iter_mut().find(|case| case.scene == scene) {
             Some(known) => {
                 known.equal.push(name.to_owned());

@@ -1,7 +1,9 @@
 //! What must hold of the cells of a mesh: none inverted, none on top of another one, one body.
 
-use contact::body::mesh::{CellKind, Mesh, SharedFace};
+use contact::body::load_size;
+use contact::body::mesh::{CellKind, Mesh, SharedFace, bounding_box};
 use contact::error::SceneError;
+use contact::scene::BodyScene;
 use exchange::gmsh::GmshMesh;
 use std::collections::HashMap;
 
@@ -114,4 +116,34 @@ pub(crate) fn check_parts(gmsh: &GmshMesh, mesh: &Mesh) -> Result<(), SceneError
         ),
     };
     Err(SceneError::out_of_range("mesh", value, allowed))
+}
+
+/// Extents of a body, mm, outside which its unit is doubtful.
+const USUAL_EXTENTS: [f64; 2] = [1.0, 2e4];
+/// Nominal strain above which loads, unit or elastic constants are doubtful: linear elasticity ends before.
+const USUAL_STRAIN: f64 = 0.05;
+
+/// Signs of a mesh in another unit than the scene says: an unusual extent, and loads that strain the body too much.
+/// `at`: the place of the body in the file.
+pub(crate) fn doubts_of_unit(at: &str, mesh: &Mesh, body: &BodyScene) -> Result<Vec<String>, SceneError> {
+    let [least, most] = bounding_box(mesh.nodes());
+    let mut extents = [0, 1, 2].map(|axis| most[axis] - least[axis]);
+    extents.sort_by(f64::total_cmp);
+    let mut doubts = Vec::new();
+    if extents[2] < USUAL_EXTENTS[0] || extents[2] > USUAL_EXTENTS[1] {
+        doubts.push(format!(
+            "the body is {:.3e} mm long: is {at}.unit the unit of the mesh? (\"mm\", \"cm\", \"m\" or \"inch\")",
+            extents[2]
+        ));
+    }
+    let (load, section) = (load_size(mesh, &body.loads)?, extents[0] * extents[1]);
+    let strain = load / section / body.material.young_modulus();
+    if strain > USUAL_STRAIN {
+        doubts.push(format!(
+            "the loads, {load:.3e} N in all, over the section of the body, {section:.3e} mm^2, strain it by {:.1e} %: are \
+             {at}.unit, the loads (N, MPa) and young_modulus (MPa) what they should be?",
+            100.0 * strain
+        ));
+    }
+    Ok(doubts)
 }

@@ -22,7 +22,7 @@ const DEFAULT_STRESS_EXPONENT: f64 = 8.0;
 pub struct ObjectiveSection {
     /// Of the contact pressures: integral or sum of powers, largest value, mean squared deviation from a wanted
     /// pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, its
-    /// largest value, largest displacement, compliance. Of the shape: the volume of the lower body.
+    /// largest value, largest displacement, compliance. Of the shape: the volume of the shaped bodies.
     pub measure: MeasureName,
     /// With several cases: the largest of their measures, each times the weight of its case, or the sum.
     pub over: Over,
@@ -131,7 +131,7 @@ pub enum Objective {
     Deviation(WantedPressure),
     /// A function of the displacements.
     Field(FieldMeasure),
-    /// The volume of the lower body.
+    /// The volume of the shaped bodies.
     Volume,
 }
 

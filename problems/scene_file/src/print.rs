@@ -53,11 +53,7 @@ fn fields(text: &mut String, node: &Node<'_>, table: &Table, path: &str, comment
                 }
             }
             _ => {
-                let brackets = match (field.fields(), field.items()) {
-                    (Some(_), Some(_)) => format!("[{place}] or [[{place}]]"),
-                    (None, Some(_)) => format!("[[{place}]]"),
-                    (_, None) => format!("[{place}]"),
-                };
+                let brackets = if field.items().is_some() { format!("[[{place}]]") } else { format!("[{place}]") };
                 comment(text, &format!("{description} Not used here: {brackets}"));
             }
         }

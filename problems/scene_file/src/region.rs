@@ -11,8 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RegionSection {
-    /// Name of the body: lower or upper of blocks, body of a mesh, or that of an entry of `[[body]]`. Default all
-    /// bodies.
+    /// Name of the body. Default all bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Smallest and largest x1. Default no bound.
@@ -35,19 +34,11 @@ pub struct RegionSection {
     pub face: Option<String>,
 }
 
-/// Checks the body of a region that messages call `field`; that of a mesh alone may also be called the lower one.
-pub(crate) fn check_body(field: &str, section: Option<&mut RegionSection>, scene: &Scene) -> Result<(), SceneError> {
-    let Some(name) = section.and_then(|section| section.body.as_mut()) else { return Ok(()) };
-    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let field = format!("{field}.body");
-    if names == ["body"] && name == "lower" {
-        "body".clone_into(name);
-        return Ok(());
-    }
-    if matches!(names[..], ["body"] | ["lower"]) && name == "upper" {
-        return Err(SceneError::out_of_range(field, name, "a body of the scene, which has no upper one"));
-    }
-    find(&field, name, names.into_iter()).map(|_| ())
+/// Checks the body of a region that messages call `field`.
+pub(crate) fn check_body(field: &str, section: Option<&RegionSection>, scene: &Scene) -> Result<(), SceneError> {
+    let Some(name) = section.and_then(|section| section.body.as_ref()) else { return Ok(()) };
+    let names = scene.bodies.iter().map(|body| body.name.as_str());
+    find(&format!("{field}.body"), name, names).map(|_| ())
 }
 
 /// The region of a section that messages call `field`; the whole bodies without one.

@@ -1,7 +1,6 @@
 //! A field of a scene by its path, and the value that it is given.
 
 use crate::SceneFile;
-use crate::by_name::places;
 use crate::check::{Checker, check};
 use crate::schema::{Node, place};
 use contact::error::SceneError;
@@ -30,13 +29,13 @@ impl Setting {
     /// # Errors
     /// As [`read`](Self::read), and for a text without the sign =.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
-        let allowed = "FIELD=VALUE, such as lower.material.young_modulus=2e5";
+        let allowed = "FIELD=VALUE, such as body[0].material.young_modulus=2e5";
         let (path, value) =
             text.split_once('=').ok_or_else(|| SceneError::out_of_range("--set", format!("{text:?}"), allowed))?;
         Self::read(path.trim(), value.trim())
     }
 
-    /// The field at a path such as `lower.loads[0].traction`, and its value in TOML. A text that is no value of TOML is
+    /// The field at a path such as `body[0].loads[0].traction`, and its value in TOML. A text that is no value of TOML is
     /// a string. A list of plain values may also be written as `6x6x3` or `6,12`; a single value stands for all entries
     /// of a list of fixed length.
     ///
@@ -67,7 +66,7 @@ impl Setting {
         Self { path: path.to_owned(), value: None }
     }
 
-    /// Its value for another field, such as that of a body of a list.
+    /// Its value for another field, such as that of another body.
     #[must_use]
     pub fn at(&self, path: &str) -> Self {
         Self { path: path.to_owned(), value: self.value.clone() }
@@ -80,8 +79,7 @@ impl Setting {
 }
 
 impl SceneFile {
-    /// The file with other values of some fields. In a scene with lists, paths of the short form lead to the bodies of
-    /// these names, and to the contacts.
+    /// The file with other values of some fields.
     ///
     /// # Errors
     /// As [`SceneFile::parse`]; [`SceneError::OutOfRange`] for an entry beyond the end of a list.
@@ -89,11 +87,7 @@ impl SceneFile {
         let failed = |reason: String| SceneError::File { path: CHANGED.to_owned(), reason };
         let table = Table::try_from(self).map_err(|error| failed(error.to_string()))?;
         let mut whole = Value::Table(table);
-        let of_lists = |setting: &Setting| {
-            let paths = places(self, &setting.path);
-            if paths.is_empty() { vec![setting.clone()] } else { paths.iter().map(|path| setting.at(path)).collect() }
-        };
-        for Setting { path, value } in &settings.iter().flat_map(of_lists).collect::<Vec<Setting>>() {
+        for Setting { path, value } in settings {
             put(&mut whole, &steps(path), value.as_ref(), path)?;
         }
         let table: Table = whole.try_into().map_err(|error: toml::de::Error| failed(error.to_string()))?;
@@ -173,6 +167,19 @@ fn resolve(path: &str) -> Result<Vec<Node<'static>>, SceneError> {
         (nodes, at) = (inner, field);
     }
     Ok(nodes)
+}
+
+/// Sets the field at a path of the table of a scene file, or removes it; checked when the file is parsed.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] for an entry beyond the end of a list.
+pub fn set_field(table: &mut Table, path: &str, value: Option<Value>) -> Result<(), SceneError> {
+    let mut whole = Value::Table(std::mem::take(table));
+    let done = put(&mut whole, &steps(path), value.as_ref(), path);
+    if let Value::Table(changed) = whole {
+        *table = changed;
+    }
+    done
 }
 
 /// Puts a value at a place below a table, or removes what is there. Tables on the way are made; an entry may follow

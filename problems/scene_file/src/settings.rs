@@ -1,29 +1,9 @@
-//! Mesh, solver, optimizer and outputs of a scene file.
+//! Solver, optimizer and outputs of a scene file.
 
 use contact::contact_shape::SolverKind;
 use contact::tfeti::PreconditionerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Bricks of blocks, and their tearing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct MeshSection {
-    /// Bricks along x1, x2, x3 of each body.
-    #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
-    pub bricks: [usize; 3],
-    /// Subdomains along x1, x2, x3 of each body; divisors of the bricks. Default 2 per edge, or, where 2 does not
-    /// divide the bricks, the divisor that leaves closest to 6 bricks.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
-    pub subdomains: Option<[usize; 3]>,
-}
-
-impl Default for MeshSection {
-    fn default() -> Self {
-        Self { bricks: [12; 3], subdomains: None }
-    }
-}
 
 /// The contact solver.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -1,8 +1,8 @@
 //! Height surfaces of a scene file: what they are, where they start, what lies opposite to them.
 
+use crate::conversion::required;
 use crate::grid_file;
-use crate::scene_parts::required;
-use crate::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
+use crate::{AdmissibleSection, ObstacleSection, SplineName, StartSection, SurfaceSection};
 use contact::error::SceneError;
 use contact::scene::CounterSurface;
 use contact::shape::{HeightShape, SplineKind};
@@ -39,30 +39,31 @@ fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
     }
 }
 
-/// A surface of heights, or in space; `field` stands in messages.
-pub(crate) fn counter_surface(
+/// A surface of heights, or in space; `field` stands in messages, `base` is the least corner and the lengths of the
+/// rectangle that a grid covers where its section does not say.
+pub(crate) fn obstacle(
     field: &str,
-    section: &CounterSection,
-    base: Option<[f64; 2]>,
+    section: &ObstacleSection,
+    base: Option<([f64; 2], [f64; 2])>,
     folder: &Path,
 ) -> Result<CounterSurface, SceneError> {
     Ok(match section {
-        &CounterSection::Plane { height } => CounterSurface::Plane { height },
-        &CounterSection::Waves { base, first, second, period } => {
+        &ObstacleSection::Plane { height } => CounterSurface::Plane { height },
+        &ObstacleSection::Waves { base, first, second, period } => {
             CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] }
         }
-        &CounterSection::Sphere { apex, radius, centre } => {
+        &ObstacleSection::Sphere { apex, radius, centre } => {
             CounterSurface::Sphere { apex, radius, centre: centre.unwrap_or_default() }
         }
-        CounterSection::Grid { file, origin, size } => {
-            let size = size.or(base);
+        ObstacleSection::Grid { file, origin, size } => {
+            let size = size.or(base.map(|(_, size)| size));
             let size = *required(&format!("{field}.size"), size.as_ref(), "the lengths of the grid along x1, x2 (mm)")?;
             let grid = grid_file::read(&folder.join(file), size, "mm")?;
-            CounterSurface::Grid(grid.at(origin.unwrap_or_default()))
+            CounterSurface::Grid(grid.at(origin.or(base.map(|(corner, _)| corner)).unwrap_or_default()))
         }
-        &CounterSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
-        &CounterSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
-        &CounterSection::Cylinder { point, axis, radius, side } => {
+        &ObstacleSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
+        &ObstacleSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
+        &ObstacleSection::Cylinder { point, axis, radius, side } => {
             CounterSurface::Cylinder { point, axis, radius, side }
         }
     })

@@ -1,14 +1,14 @@
-//! Surfaces of a scene file: what lies above, what is optimized, and within which bounds.
+//! Surfaces of a scene file: obstacles, optimized surfaces of blocks, and their bounds.
 
 use contact::scene::Side;
 use contact::shape::{ShapeBounds, ShapedFace};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The surface above the contact gap.
+/// A rigid obstacle, or the heights of a face of a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum CounterSection {
+pub enum ObstacleSection {
     /// A horizontal plane.
     Plane {
         /// Its height.
@@ -48,11 +48,11 @@ pub enum CounterSection {
         /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that
         /// begin with # are comments.
         file: String,
-        /// The corner of the grid of least x1 and x2, for a mesh. Default the corner of the base.
+        /// The corner of the grid of least x1 and x2. Default that of the base of the block.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
         origin: Option<[f64; 2]>,
-        /// Lengths of the grid along x1, x2, for a mesh. Default those of the base.
+        /// Lengths of the grid along x1, x2; required for a mesh. Default those of the base of the block.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
         size: Option<[f64; 2]>,
@@ -99,7 +99,7 @@ pub enum CounterSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceSection {
-    /// The face of the block that it shapes; of a single block and of the lower one of two, the top.
+    /// The face of the block that it shapes.
     #[serde(default)]
     pub face: ShapedFace,
     /// Spline that carries the surface.
@@ -191,7 +191,7 @@ pub struct AdmissibleSection {
     /// Largest slope between neighbouring controls.
     #[schemars(range(max = 1e9), extend("x-unit" = "1", "exclusiveMinimum" = 0.0))]
     pub slope: f64,
-    /// Smallest and largest volume of the lower body.
+    /// Smallest and largest volume of the body.
     #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
     pub volume: [f64; 2],
 }

@@ -1,55 +1,115 @@
-//! The table of all fields for `docs/scenes.md`.
+//! The fields of scene files, type by type: for `docs/scenes.md` and the command `fields`.
 
 use crate::allowed;
-use crate::schema::{Node, place};
+use crate::schema::{Node, schema};
+use contact::error::SceneError;
+use contact::names::find;
 use serde_json::Value;
 
-/// All fields of a scene file as a Markdown table: path, default, what is allowed with its unit, meaning.
-pub fn field_table() -> String {
-    let mut text = String::from("| field | default | allowed | meaning |\n|---|---|---|---|\n");
-    rows(&mut text, &Node::root(), "", &Value::Null);
+/// The name of the type of the whole file.
+const FILE: &str = "scene";
+
+/// A type of tables: its name, and its place in the schema.
+type Kind = (String, Node<'static>);
+
+/// The fields of one type of tables as Markdown, or of all types in the order in which they are named: field, default,
+/// what is allowed with its unit, meaning.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] with the names for a type that scene files do not have.
+pub fn field_tables(kind: Option<&str>) -> Result<String, SceneError> {
+    let kinds = kinds();
+    let wanted = match kind {
+        None => &kinds[..],
+        Some(kind) => &[kinds[find("fields", kind, kinds.iter().map(|(name, _)| name.as_str()))?].clone()],
+    };
+    Ok(wanted.iter().map(|(name, node)| text(name, node)).collect::<Vec<_>>().join("\n"))
+}
+
+/// All types, each behind the first one that names it.
+fn kinds() -> Vec<Kind> {
+    let mut found = vec![(FILE.to_owned(), Node::root())];
+    let mut next = 0;
+    while let Some((_, node)) = found.get(next).cloned() {
+        for inner in tables(&node).iter().filter_map(|table| table.fields()).flat_map(|fields| fields.values()) {
+            if let Some((name, node)) = kind(inner).filter(|(name, _)| found.iter().all(|(known, _)| known != name)) {
+                found.push((name, node));
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+/// The tables at a place: itself, or its forms.
+fn tables(node: &Node<'static>) -> Vec<Node<'static>> {
+    if node.forms().is_empty() { vec![*node] } else { node.forms().into_iter().map(|(_, form)| form).collect() }
+}
+
+/// The type of the table, or of the tables of a list, in a field; none for plain values.
+fn kind(field: &'static Value) -> Option<Kind> {
+    let reference = match field {
+        _ if field.get("items").is_some() => &field["items"],
+        _ if field.get("anyOf").is_some() => {
+            field["anyOf"].as_array()?.iter().find(|choice| choice["type"] != "null")?
+        }
+        _ => field,
+    };
+    let reference = if reference.get("items").is_some() { &reference["items"] } else { reference };
+    let name = reference["$ref"].as_str()?.rsplit('/').next()?;
+    let node = Node::new(&schema()["$defs"][name]);
+    node.is_table().then(|| (words(name.trim_end_matches("Section")), node))
+}
+
+/// `VolumeMaterial` as `volume-material`.
+fn words(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !text.is_empty() {
+            text.push('-');
+        }
+        text.extend(letter.to_lowercase());
+    }
     text
 }
 
-fn rows(text: &mut String, node: &Node<'_>, path: &str, defaults: &Value) {
-    let Some(fields) = node.fields() else { return };
-    for (name, schema) in fields {
+fn text(name: &str, node: &Node<'static>) -> String {
+    let mut text = format!("### `{name}`\n\n{}\n\n", node.text("description").unwrap_or_default());
+    text += "| field | default | allowed | meaning |\n|---|---|---|---|\n";
+    let forms = node.forms();
+    if forms.is_empty() {
+        rows(&mut text, node);
+    }
+    for (form, node) in forms {
+        row(&mut text, "form", "", &format!("\"{form}\""), &node.text("description").unwrap_or_default());
+        rows(&mut text, &node);
+    }
+    text
+}
+
+fn rows(text: &mut String, node: &Node<'static>) {
+    for (name, schema) in node.fields().into_iter().flatten() {
         let field = Node::new(schema);
         if field.inner.get("const").is_some() {
             continue;
         }
-        let place = place(path, name);
-        let meaning = field.text("description").unwrap_or_default();
-        let default = field.outer.get("default").or(defaults.get(name)).unwrap_or(&Value::Null);
-        if field.is_table() {
-            let (entries, forms) = (field.tables(), field.forms());
-            let required = if node.requires(name) { "required" } else { "–" };
-            if field.fields().is_some() || !forms.is_empty() {
-                row(text, &format!("[{place}]"), required, "", &meaning);
-                rows(text, &field, &place, default);
-            }
-            if let Some(entries) = entries {
-                let own = entries.text("description").filter(|_| field.fields().is_some());
-                row(text, &format!("[[{place}]]"), required, "", &own.unwrap_or(meaning));
-                rows(text, &entries, &place, default);
-            }
-            for (form, node) in forms {
-                let meaning = node.text("description").unwrap_or_default();
-                row(text, &format!("{place}.form"), "", &format!("\"{form}\""), &meaning);
-                rows(text, &node, &place, &Value::Null);
-            }
-            continue;
-        }
-        let default = match default {
+        let default = field.outer.get("default").unwrap_or(&Value::Null);
+        let default = match (kind(schema), default) {
             _ if node.requires(name) => "required".to_owned(),
-            Value::Null => "see meaning".to_owned(),
-            value => value.to_string(),
+            (Some(_), _) => "–".to_owned(),
+            (None, Value::Null) => "see meaning".to_owned(),
+            (None, value) => value.to_string(),
         };
-        row(text, &place, &default, &allowed::words(&field), &meaning);
+        let allowed = match kind(schema) {
+            None => allowed::words(&field),
+            Some((kind, _)) if field.items().is_some() => format!("list of `{kind}`"),
+            Some((kind, _)) => format!("`{kind}`"),
+        };
+        row(text, name, &default, &allowed, &field.text("description").unwrap_or_default());
     }
 }
 
-fn row(text: &mut String, place: &str, default: &str, allowed: &str, meaning: &str) {
+fn row(text: &mut String, name: &str, default: &str, allowed: &str, meaning: &str) {
     let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
-    *text += &format!("| `{place}` | {} | {} | {} |\n", line(default), line(allowed), line(meaning));
+    *text += &format!("| `{name}` | {} | {} | {} |\n", line(default), line(allowed), line(meaning));
 }

@@ -9,15 +9,14 @@ use contact::scene;
 use contact::scene::Held;
 use exchange::gmsh::{self, CellKind, FacetKind, GmshCell, GmshFacet, GmshMesh};
 use nonsmooth::{Accuracy, StateSolver, Vector};
-use scene_file::{Case, MethodName, Objective, SceneFile, field_table, schema};
+use scene_file::{Case, MethodName, Objective, SceneFile, field_tables, schema};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
 
-const SCENES: [&str; 12] = [
+const SCENES: [&str; 11] = [
     "signorini",
     "hertz",
-    "hertz_bodies",
     "stack",
     "signorini_frictionless",
     "flat_punch",
@@ -50,14 +49,33 @@ fn the_embedded_scenes_are_the_paper_s_examples() {
     }
 }
 
+/// A first scene is short: an only body needs no name, and its only contact names no body.
 #[test]
-fn the_short_form_is_the_same_scene_and_reads_back() {
-    let file = read("hertz");
-    let [short, listed] = [&file, &read("hertz_bodies")].map(|file| Case::new(file, &folder()).unwrap());
-    assert_eq!(short.scene, listed.scene);
-    let printed = file.print().unwrap();
-    assert_eq!(SceneFile::parse(&printed, "printed").unwrap(), file);
-    assert!(printed.contains("\n[contact]\n") && printed.contains("Not used here: [body] or [[body]]"), "{printed}");
+fn the_only_body_has_a_name_by_default_and_one_of_two_needs_one() {
+    let text = text("signorini").replace("name = \"lower\"\n", "");
+    let only = Case::new(&SceneFile::parse(&text, "mine").unwrap(), &folder()).unwrap().scene;
+    assert_eq!((&*only.bodies[0].name, only.contacts[0].slave.body), ("body", 0));
+    let refused = |right: &str, wrong: &str| {
+        let file = SceneFile::parse(&self::text("hertz").replacen(right, wrong, 1), "mine").unwrap();
+        Case::new(&file, &folder()).unwrap_err().to_string()
+    };
+    let nameless = refused("name = \"lower\"\n", "");
+    assert!(nameless.contains("body[0].name = missing"), "{nameless}");
+    let bodiless = refused("body = \"lower\", ", "");
+    assert!(bodiless.contains("contact[0].slave.body = missing") && bodiless.contains("lower, upper"), "{bodiless}");
+}
+
+#[test]
+fn every_type_of_the_form_is_listed_once() {
+    let all = field_tables(None).unwrap();
+    let rows = all.lines().filter(|line| line.starts_with("| `")).count();
+    assert!((150..=230).contains(&rows), "{rows} rows");
+    for kind in ["scene", "body", "block", "material", "support", "load", "obstacle", "lattice", "region", "contact"] {
+        assert_eq!(all.matches(&format!("### `{kind}`\n")).count(), 1, "{kind}");
+        assert!(all.contains(&field_tables(Some(kind)).unwrap()));
+    }
+    let unknown = field_tables(Some("bdy")).unwrap_err().to_string();
+    assert!(unknown.contains("bdy") && unknown.contains("body"), "{unknown}");
 }
 
 #[test]
@@ -76,10 +94,11 @@ fn a_printed_scene_reads_back_as_the_same_scene() {
 fn all_examples_are_solved_and_certified_on_a_coarse_mesh() {
     for name in SCENES {
         let mut file = read(name);
-        // A scene with lists of bodies has a mesh for every body instead.
-        if file.parts().is_empty() {
-            file.mesh.bricks = [4; 3];
-            file.mesh.subdomains = Some([2; 3]);
+        for block in file.body.iter_mut().filter_map(|body| body.block.as_mut()) {
+            // The stack is coarse already, and its layers have bricks of their own.
+            if name != "stack" {
+                (block.bricks, block.subdomains) = ([4; 3], Some([2; 3]));
+            }
         }
         let case = Case::new(&file, &folder()).unwrap();
         let solve = |kind| {
@@ -105,16 +124,16 @@ fn misspelt_fields_suggest_the_nearest_one() {
     let scene = text("hertz");
     for (right, wrong, path) in [
         ("friction = 0.3", "frction = 0.3", "`frction` (did you mean `friction`?)"),
-        ("bricks =", "brick =", "`mesh.brick` (did you mean `bricks`?)"),
+        ("bricks =", "brick =", "`body[0].block.brick` (did you mean `bricks`?)"),
         (
             "young_modulus = 2.1e5",
             "youngs_modulus = 2.1e5",
-            "`upper.material.youngs_modulus` (did you mean `young_modulus`?)",
+            "`body[1].material.youngs_modulus` (did you mean `young_modulus`?)",
         ),
-        ("radius = 20.0", "raduis = 20.0", "`counter_surface.raduis` (did you mean `radius`?)"),
-        ("traction = [500.0", "tration = [500.0", "`upper.loads[1].tration` (did you mean `traction`?)"),
-        ("[admissible]", "[admisible]", "`admisible` (did you mean `admissible`?)"),
-        ("volume =", "zzz =", "`admissible.zzz`; allowed: minimum_height, slope, volume"),
+        ("radius = 20.0", "raduis = 20.0", "`body[1].block.bottom.raduis` (did you mean `radius`?)"),
+        ("traction = [500.0", "tration = [500.0", "`body[1].loads[1].tration` (did you mean `traction`?)"),
+        ("[body.admissible]", "[body.admisible]", "`body[0].admisible` (did you mean `admissible`?)"),
+        ("volume =", "zzz =", "`body[0].admissible.zzz`; allowed: minimum_height, slope, volume"),
     ] {
         assert!(scene.contains(right), "{right}");
         let message = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap_err().to_string();
@@ -130,14 +149,14 @@ fn bad_values_are_refused_with_path_value_and_what_is_allowed() {
         ("friction = 0.3", "friction = nan", ["friction = nan", "finite"]),
         ("friction = 0.3", "friction = \"much\"", ["friction = \"much\"", "number"]),
         ("friction = 0.3\n", "", ["friction is missing", "≥ 0"]),
-        ("bricks = [12, 12, 12]", "bricks = [12, 12]", ["mesh.bricks = [12, 12]", "3 entries"]),
-        ("bricks = [12, 12, 12]", "bricks = [12, 0, 12]", ["mesh.bricks[1] = 0", "≥ 1"]),
-        ("bricks = [12, 12, 12]", "bricks = [12, 1.5, 12]", ["mesh.bricks[1] = 1.5", "integer"]),
-        ("poisson_ratio = 0.29", "poisson_ratio = 0.5", ["upper.material.poisson_ratio = 0.5", "< 0.5"]),
-        ("form = \"sphere\"", "form = \"bowl\"", ["counter_surface.form = bowl", "form = \"sphere\""]),
-        ("held = [\"u1\"]", "held = [\"u4\"]", ["lower.supports[0].held[0] = \"u4\"", "\"u3\""]),
+        ("bricks = [12, 12, 12]", "bricks = [12, 12]", ["body[0].block.bricks = [12, 12]", "3 entries"]),
+        ("bricks = [12, 12, 12]", "bricks = [12, 0, 12]", ["body[0].block.bricks[1] = 0", "≥ 1"]),
+        ("bricks = [12, 12, 12]", "bricks = [12, 1.5, 12]", ["body[0].block.bricks[1] = 1.5", "integer"]),
+        ("poisson_ratio = 0.29", "poisson_ratio = 0.5", ["body[1].material.poisson_ratio = 0.5", "< 0.5"]),
+        ("form = \"sphere\"", "form = \"bowl\"", ["body[1].block.bottom.form = bowl", "form = \"sphere\""]),
+        ("held = [\"u1\"]", "held = [\"u4\"]", ["body[0].supports[0].held[0] = \"u4\"", "\"u3\""]),
         ("radius = 20.0", "radius = 1e400", ["my.toml", "overflowed"]),
-        ("[mesh]", "[mesh", ["my.toml", "TOML parse error at line"]),
+        ("[body.block]", "[body.block", ["my.toml", "TOML parse error at line"]),
     ] {
         assert!(scene.contains(right), "{right}");
         let message = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap_err().to_string();
@@ -155,16 +174,16 @@ fn contradictions_between_fields_are_refused() {
         ("face = \"bottom\"\nheld", "face = \"top\"\nheld", "any face but the contact boundary"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"controls\", heights = [1.0, 2.0] }", "36"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),
-        ("face = \"x1-max\"", "face = \"x1-mxa\"", "upper.loads[1].face"),
+        ("face = \"x1-max\"", "face = \"x1-mxa\"", "body[1].loads[1].face"),
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "x1-max"),
         ("weight = \"nodes\"", "measure = \"peak-pressure\"\nexponent = 4", "objective.exponent"),
-        ("[admissible]", "[optimizer]\ncontinuation = [6, 6]\n[admissible]", "optimizer.continuation"),
+        ("[[contact]]", "[optimizer]\ncontinuation = [6, 6]\n[[contact]]", "optimizer.continuation"),
         (
             "held = [\"u1\"]",
             "held = [\"u1\"]\ndisplacement = [0.1, 0.2, 0.0]",
-            "lower.supports[0].displacement[1] = 0.2",
+            "body[0].supports[0].displacement[1] = 0.2",
         ),
-        ("held = [\"u1\"]", "held = [\"u1\"]\nnormal_displacement = 0.2", "lower.supports[0].normal_displacement"),
+        ("held = [\"u1\"]", "held = [\"u1\"]\nnormal_displacement = 0.2", "body[0].supports[0].normal_displacement"),
     ] {
         assert!(scene.contains(right), "{right}");
         let file = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap();
@@ -177,8 +196,8 @@ fn contradictions_between_fields_are_refused() {
 fn prescribed_displacements_and_interference_reach_the_scene() {
     let words = "held = [\"u1\", \"normal\"]\ndisplacement = [0.1, 0.0, 0.0]\nnormal_displacement = -0.1";
     let scene = text("hertz").replacen("held = [\"u1\"]", words, 1);
-    let contact = "[contact]\ninterference = 0.02\n";
-    let file = SceneFile::parse(&scene.replacen("[contact]\n", contact, 1), "my.toml").unwrap();
+    let contact = "[[contact]]\ninterference = 0.02\n";
+    let file = SceneFile::parse(&scene.replacen("[[contact]]\n", contact, 1), "my.toml").unwrap();
     let scene = Case::new(&file, &folder()).unwrap().scene;
     let held: Vec<Held> = scene.bodies[0].supports.iter().take(2).map(|support| support.held).collect();
     assert_eq!(held, [Held::Components([Some(0.1), None, None]), Held::Normal(-0.1)]);
@@ -242,9 +261,10 @@ fn every_field_is_documented_with_unit_and_range() {
 }
 
 #[test]
-fn the_documented_table_is_that_of_the_fields() {
+fn the_documented_tables_are_those_of_the_fields() {
     let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenes.md")).unwrap();
-    assert!(page.contains(&field_table()), "docs/scenes.md must hold this table:\n{}", field_table());
+    let tables = field_tables(None).unwrap();
+    assert!(page.contains(&tables), "docs/scenes.md must hold these tables:\n{tables}");
 }
 
 /// A scene with another section `[objective]`.

@@ -10,7 +10,7 @@ use crate::commands::numbers::number;
 use crate::commands::output::{finish, left, notice};
 use crate::commands::scene_options::help_with_defaults;
 use crate::commands::shell_files::{asked, examples};
-use crate::commands::{compare, evaluate, export, look, new_scene, optimize, recheck, study, verify};
+use crate::commands::{compare, evaluate, export, field_list, look, new_scene, optimize, recheck, study, verify};
 use clap::{Arg, value_parser};
 use contact::equilibrium::STAGE_TARGET;
 use contact::memory;
@@ -43,7 +43,9 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
     let scene = Arg::new(SCENE).value_name("SCENE.toml").value_parser(value_parser!(PathBuf));
     let parser = help_with_defaults(Arguments::parser(), None)
         .arg(scene.help("Scene file (docs/scenes.md; examples in problems/scenes)"))
-        .override_usage(format!("{binary} SCENE.toml [COMMAND] [OPTIONS]\n       {binary} new MESH.msh"))
+        .override_usage(format!(
+            "{binary} SCENE.toml [COMMAND] [OPTIONS]\n       {binary} new MESH.msh\n       {binary} fields [TYPE]"
+        ))
         .after_help(examples(binary, "SCENE.toml "));
     let missing = || {
         Failure::Input(
@@ -54,7 +56,7 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
         let scene = scene.ok_or_else(missing)?;
         Ok((SceneFile::read(&scene)?, Some(scene)))
     };
-    match new_scene::asked(binary, &words()) {
+    match new_scene::asked(binary, &words()).or_else(|| field_list::asked(binary, &words())) {
         Some(result) => finish(result, None),
         None => run_parsed(binary, parser, open, processes),
     }

@@ -49,7 +49,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let usage = session.processes.usage(shape.state().solver)?;
     rest.extend(closing_facts(&warnings, &arguments.left_out(solver), usage.as_ref())?);
     let cases = case_facts::cases(objective, &loaded.case.cases, (vec![], &[&shape]), None)?;
-    let scene = Group::new("", scene_words::parts(&solver.problem().scene)?);
+    let scene = Group::new("", scene_words::facts(&solver.problem().scene)?);
     let groups = vec![Group::new("", result), scene, cases, Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
     let object = json(&facts)?;

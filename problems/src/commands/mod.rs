@@ -9,6 +9,7 @@
 
 mod arguments;
 mod ascii;
+mod body_fields;
 mod case_facts;
 mod command_line;
 mod compare;
@@ -17,12 +18,12 @@ mod evaluate;
 mod export;
 mod facts;
 mod failure;
+mod field_list;
 mod file_limit;
 mod folder;
 mod interrupt;
 mod limit_check;
 mod limited_value;
-mod list_fields;
 mod loaded_scene;
 mod long_run;
 mod look;

@@ -1,7 +1,7 @@
 //! The options that stand for fields of the scene. Each is declared once, in [`OPTIONS`] or [`OPTIMIZER_OPTIONS`];
 //! parser, help with defaults, messages, and the changes of a scene derive from that.
 
-use crate::commands::list_fields::{Settings, first_in_lists, in_lists, stands_for, unfit_subdomains};
+use crate::commands::body_fields::{Settings, first_body, of_bodies, stands_for, unfit_subdomains};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -38,43 +38,31 @@ const OPTIONS: [SceneOption; 14] = [
         adapt: fitting,
         ..option(
             (BODIES, "mesh", "N|N1xN2xN3"),
-            &["mesh.bricks"],
+            &["body[0].block.bricks"],
             "Bricks of each body: per edge, or along x1, x2 and x3",
         )
     },
-    SceneOption {
-        adapt: of_blocks,
-        ..option(
-            (BODIES, "subdomains", "S|S1xS2xS3"),
-            &["mesh.subdomains"],
-            "Subdomains of each body, per edge or along x1, x2 and x3; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2 does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge",
-        )
-    },
+    option(
+        (BODIES, "subdomains", "S|S1xS2xS3"),
+        &["body[0].block.subdomains"],
+        "Subdomains of each body, per edge or along x1, x2 and x3; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2 does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge",
+    ),
     option((BODIES, "friction", "MU"), &["friction"], "Coulomb friction coefficient"),
-    SceneOption {
-        adapt: of_bodies,
-        ..option(
-            (BODIES, "poisson-ratio", "NU"),
-            &["lower.material.poisson_ratio", "body.material.poisson_ratio"],
-            "Poisson's ratio of the lower body, or of the body of a mesh",
-        )
-    },
-    SceneOption {
-        adapt: of_bodies,
-        ..option(
-            (BODIES, "young-modulus", "E"),
-            &["lower.material.young_modulus", "body.material.young_modulus"],
-            "Young's modulus of the lower body, or of the body of a mesh, MPa",
-        )
-    },
-    SceneOption {
-        adapt: of_bodies,
-        ..option(
-            (BODIES, "formulation", "NAME"),
-            &["lower.material.formulation", "upper.material.formulation", "body.material.formulation"],
-            "How cells of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials",
-        )
-    },
+    option(
+        (BODIES, "poisson-ratio", "NU"),
+        &["body[0].material.poisson_ratio"],
+        "Poisson's ratio of the optimized body",
+    ),
+    option(
+        (BODIES, "young-modulus", "E"),
+        &["body[0].material.young_modulus"],
+        "Young's modulus of the optimized body, MPa",
+    ),
+    option(
+        (BODIES, "formulation", "NAME"),
+        &["body[0].material.formulation"],
+        "How cells of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials",
+    ),
     SceneOption {
         read: factor,
         adapt: loaded,
@@ -84,11 +72,11 @@ const OPTIONS: [SceneOption; 14] = [
         read: surface,
         ..option(
             (SURFACE, "surface", "bspline:DEGREE|bezier"),
-            &["surface.spline", "surface.degree"],
+            &["body[0].surface.spline", "body[0].surface.degree"],
             "Spline of the contact surface",
         )
     },
-    option((SURFACE, "control-points", "N1xN2"), &["surface.control_points"], "Control points along x1 and x2"),
+    option((SURFACE, "control-points", "N1xN2"), &["body[0].surface.control_points"], "Control points along x1 and x2"),
     option((SOLVER, "solver", "NAME"), &["solver.kind"], "Contact solver"),
     option((SOLVER, "preconditioner", "NAME"), &["solver.preconditioner"], "Preconditioner of the dual operator"),
     option(
@@ -136,7 +124,7 @@ const OPTIMIZER_OPTIONS: [SceneOption; 5] = [
     option(
         (OPTIMIZER, "starts", "K"),
         &["optimizer.starts"],
-        "Optimize from so many starts: that of the scene, one that follows the counter surface, then smooth random ones; reports how many agree",
+        "Optimize from so many starts: that of the scene, one that follows the obstacle, then smooth random ones; reports how many agree",
     ),
 ];
 
@@ -147,42 +135,13 @@ const fn option(
     help: &'static str,
 ) -> SceneOption {
     let read = |fields: &'static [&'static str], text: &str| fields.iter().map(|f| Setting::read(f, text)).collect();
-    SceneOption { name, fields, heading, value_name, help, read, adapt: |file, _, settings| in_lists(file, settings) }
+    SceneOption { name, fields, heading, value_name, help, read, adapt: |file, _, settings| of_bodies(file, settings) }
 }
 
 /// Subdomains of the file that do not fit the new mesh give way to those that do.
 fn fitting(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
-    let mut settings = of_blocks(file, "", settings)?;
-    let changed = file.with(&settings)?;
-    if !file.parts().is_empty() {
-        settings.extend(unfit_subdomains(&changed));
-        return Ok(settings);
-    }
-    let mesh = changed.mesh;
-    let fits = |counts: [usize; 3]| mesh.bricks.iter().zip(counts).all(|(n, count)| count > 0 && n % count == 0);
-    settings.extend((!mesh.subdomains.is_some_and(fits)).then(|| Setting::removal("mesh.subdomains")));
-    Ok(settings)
-}
-
-/// Refuses fields of blocks for a mesh.
-fn of_blocks(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
-    match settings.first() {
-        Some(setting) if file.mesh_body().is_some() => Err(SceneError::out_of_range(
-            setting.path(),
-            "given for a mesh",
-            "only for blocks; body.pieces divides a mesh",
-        )),
-        _ => in_lists(file, settings),
-    }
-}
-
-/// The fields of a body that is not there are left out.
-fn of_bodies(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
-    if !file.parts().is_empty() {
-        return in_lists(file, settings);
-    }
-    let bodies = [("lower.", file.lower.is_some()), ("upper.", file.upper.is_some()), ("body.", file.body.is_some())];
-    settings.retain(|setting| bodies.iter().all(|(body, exists)| *exists || !setting.path().starts_with(body)));
+    let mut settings = of_bodies(file, settings)?;
+    settings.extend(unfit_subdomains(&file.with(&settings)?));
     Ok(settings)
 }
 
@@ -198,12 +157,8 @@ fn factor(_: &'static [&'static str], text: &str) -> Settings {
 /// All loads times the factor in the text.
 fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings {
     let factor: f64 = text.parse().unwrap_or(f64::NAN);
-    let lower = file.lower.iter().map(|body| ("lower".to_owned(), &body.loads));
-    let upper = file.upper.iter().map(|body| ("upper".to_owned(), &body.loads));
-    let body = file.mesh_body().into_iter().map(|body| ("body".to_owned(), &body.loads));
-    let parts = file.parts().iter().enumerate().map(|(index, part)| (format!("body[{index}]"), &part.loads));
-    for (body, loads) in lower.chain(upper).chain(body).chain(parts) {
-        for (index, load) in loads.iter().enumerate() {
+    for (number, body) in file.body.iter().enumerate() {
+        for (index, load) in body.loads.iter().enumerate() {
             let mut scale = |name: &str, unit: &str, vector: Option<&[f64]>| {
                 let Some(vector) = vector else { return Ok(()) };
                 let scaled: Vec<f64> = vector.iter().map(|part| factor * part).collect();
@@ -213,7 +168,7 @@ fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings 
                     return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
                 }
                 let value = if name == "pressure" { format!("{:?}", scaled[0]) } else { format!("{scaled:?}") };
-                settings.push(Setting::read(&format!("{body}.loads[{index}].{name}"), &value)?);
+                settings.push(Setting::read(&format!("body[{number}].loads[{index}].{name}"), &value)?);
                 Ok(())
             };
             scale("traction", "MPa", load.traction.as_ref().map(<[f64; 3]>::as_slice))?;
@@ -223,7 +178,7 @@ fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings 
             scale("body_force", "N/mm³", load.body_force.as_ref().map(<[f64; 3]>::as_slice))?;
             if let Some(texts) = &load.formula {
                 let texts: Vec<String> = texts.iter().map(|text| format!("{factor:?}*({text})")).collect();
-                settings.push(Setting::read(&format!("{body}.loads[{index}].formula"), &format!("{texts:?}"))?);
+                settings.push(Setting::read(&format!("body[{number}].loads[{index}].formula"), &format!("{texts:?}"))?);
             }
         }
     }
@@ -334,8 +289,8 @@ impl<const OPTIMIZER: bool> SceneOptions<OPTIMIZER> {
 pub struct SceneChanges {
     #[command(flatten)]
     options: SceneOptions<false>,
-    /// Any field of the scene, after the other options, several times: lower.material.young_modulus=2e5,
-    /// mesh.bricks=[6,6,3], upper.loads[0].traction=[0,0,-1500]. --print-scene shows all fields.
+    /// Any field of the scene, after the other options, several times: body[0].material.young_modulus=2e5,
+    /// body[0].block.bricks=[6,6,3], body[1].loads[0].traction=[0,0,-1500]. --print-scene shows all fields.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = Setting::parse, help_heading = BODIES)]
     set: Vec<Setting>,
 }
@@ -359,8 +314,8 @@ impl SceneChanges {
     /// [`SceneError::OutOfRange`] for what no scene may have.
     pub fn apply(&self, mut file: SceneFile) -> Result<SceneFile, SceneError> {
         for (option, text) in self.options.0.iter().filter_map(|(name, text)| find(name).map(|option| (option, text))) {
-            let named = |error| if file.parts().is_empty() { error } else { self.blame(error) };
-            file = file.with(&(option.adapt)(&file, text, option.settings(text)?).map_err(named)?)?;
+            let blamed = |error| self.blame(error);
+            file = file.with(&(option.adapt)(&file, text, option.settings(text)?).map_err(blamed)?)?;
         }
         if self.set.is_empty() { Ok(file) } else { file.with(&self.set) }
     }
@@ -386,7 +341,7 @@ pub fn help_with_defaults(command: Command, scene: Option<&SceneFile>) -> Comman
         let Some(field) = find(argument.get_id().as_str()).and_then(|option| option.fields.first()) else {
             return argument;
         };
-        let own = |scene: &SceneFile| scene.value(&first_in_lists(scene, field));
+        let own = |scene: &SceneFile| scene.value(&first_body(scene, field));
         let default = scene.map_or_else(|| format!("{field} of the scene"), own);
         let meaning = argument.get_help().map(ToString::to_string).unwrap_or_default();
         argument.help(format!("{meaning} [default: {default}]"))

@@ -7,17 +7,6 @@ use contact::scene::{BodyFace, BodyScene, Geometry, Held, Load, LoadKind, Master
 use figures::number;
 use serde_json::json;
 
-/// Whether a scene is one of the short form of scene files: a mesh or a block below an obstacle or a second block.
-pub fn is_short(scene: &Scene) -> bool {
-    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let [contact] = &scene.contacts[..] else { return false };
-    let known = match contact.master_face() {
-        None => matches!(names[..], ["body"] | ["lower"]),
-        Some(master) => names == ["lower", "upper"] && master.body == 1,
-    };
-    known && contact.slave.body == 0 && !contact.is_tied() && scene.bodies[0].shape.is_some()
-}
-
 /// What a body is called in a sentence: "lower body", or "body" where there is only one.
 pub fn body(name: &str) -> String {
     if name == "body" { name.to_owned() } else { format!("{name} body") }
@@ -40,11 +29,6 @@ pub fn stem(scene: &Scene, body: usize) -> String {
 /// "12×12×12 bricks", or "1881 cells"; of bodies that differ, one after the other.
 pub fn mesh(scene: &Scene) -> String {
     distinct(scene.bodies.iter().map(mesh_of)).join(", ")
-}
-
-/// "2×2×2 subdomains each", or "about 5 pieces"; of bodies that differ, one after the other.
-pub fn pieces(scene: &Scene) -> String {
-    distinct(scene.bodies.iter().map(pieces_of)).join(", ")
 }
 
 /// The friction coefficients of the contacts that may slide, in their order: "0.3", or "0.3, 0".
@@ -81,28 +65,14 @@ pub fn counted(count: usize, [one, several]: [&str; 2]) -> String {
     format!("{count} {}", if count == 1 { one } else { several })
 }
 
-/// The bodies and the contacts of a scene: one line for a scene of the short form, else a line for each of them.
+/// The bodies and the contacts of a scene: their numbers, then a line for each of them, and both as lists in JSON.
 ///
 /// # Errors
 /// [`Failure::Computation`] for a value that has no JSON.
 pub fn facts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
     let bodies = counted(scene.bodies.len(), ["body", "bodies"]);
-    let words = match is_short(scene) {
-        true => format!("{bodies} of {}, {}, friction {}", mesh(scene), pieces(scene), friction(scene)),
-        false => format!("{bodies}, {}", counted(scene.contacts.len(), ["contact", "contacts"])),
-    };
-    Ok([vec![Fact::new("", "scene", words, "")], parts(scene)?].concat())
-}
-
-/// A line for every body and for every contact, and both as lists in JSON; nothing for a scene of the short form.
-///
-/// # Errors
-/// [`Failure::Computation`] for a value that has no JSON.
-pub fn parts(scene: &Scene) -> Result<Vec<Fact>, Failure> {
-    let mut facts = Vec::new();
-    if is_short(scene) {
-        return Ok(facts);
-    }
+    let words = format!("{bodies}, {}", counted(scene.contacts.len(), ["contact", "contacts"]));
+    let mut facts = vec![Fact::new("", "scene", words, "")];
     for body in &scene.bodies {
         let shape = if body.shape.is_some() { format!(", {} controls", body.control_count()) } else { String::new() };
         let words = format!("{}, {}{shape}", mesh_of(body), pieces_of(body).trim_end_matches(" each"));

@@ -18,7 +18,9 @@ fn scene(folder: &Path, more: &str) -> String {
              {{ face = \"x1-max\", traction = [{pull:?}, 0.0, -2000.0] }}]"
         );
         let offset = pull / 1000.0;
-        format!("[[case]]\nname = \"{name}\"\noffset = [{offset:?}, 0.0, 0.0]\nupper = {{ loads = {loads} }}\n")
+        format!(
+            "[[case]]\nname = \"{name}\"\nbody = [{{ name = \"upper\", offset = [{offset:?}, 0.0, 0.0], loads = {loads} }}]\n"
+        )
     };
     let cases: Vec<String> = [("left", -500.0), ("still", 0.0), ("right", 500.0)].into_iter().map(case).collect();
     let path = folder.join("cases.toml");
@@ -131,7 +133,7 @@ fn the_lug_states_its_stresses_in_every_case() {
 /// A surface that may bend at a price bends less, and its objective says so.
 #[test]
 fn fairness_is_a_part_of_the_objective() {
-    let fairness = |weight: &str| format!("surface.fairness={{weight={weight}}}");
+    let fairness = |weight: &str| format!("body[0].surface.fairness={{weight={weight}}}");
     let hertz = format!("{}/scenes/hertz.toml", env!("CARGO_MANIFEST_DIR"));
     let run = |options: &[&str]| {
         let fixed = [hertz.as_str(), "--single", "--mesh", "4", "--subdomains", "2", "--json"];

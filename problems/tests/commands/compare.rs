@@ -125,25 +125,36 @@ fn objectives_that_reach_zero_are_compared_in_words() {
 /// A body that does not reach its counterpart: both objectives are zero from the start on.
 pub const NEVER_TOUCHES: &str = r#"
 name = "never touches"
-size = [20.0, 20.0]
 friction = 0.3
-[mesh]
-bricks = [4, 4, 4]
-[lower]
+
+[[body]]
+name = "lower"
 material = { young_modulus = 2.1e5, poisson_ratio = 0.3 }
-[[lower.supports]]
+
+[body.block]
+size = [20.0, 20.0]
+bricks = [4, 4, 4]
+
+[[body.supports]]
 face = "bottom"
 held = ["u1", "u2", "u3"]
-[[lower.loads]]
+
+[[body.loads]]
 face = "x1-max"
 traction = [0.0, 0.0, -1.0]
-[counter_surface]
-form = "plane"
-height = 21.0
-[surface]
+
+[body.surface]
 start = { form = "plane", height = 20.0 }
-[admissible]
+
+[body.admissible]
 minimum_height = 15.0
 slope = 1.0
 volume = [1000.0, 9000.0]
+
+[[contact]]
+slave = { face = "top" }
+
+[contact.obstacle]
+form = "plane"
+height = 21.0
 "#;

@@ -37,7 +37,7 @@ fn grids_are_found_beside_the_scene_and_travel_with_a_run() {
     let out = folder.path().join("run");
     let limits = ["--mesh", "4", "--optimizer", "bundle", "--max-evaluations", "2", "--json", "--out", text(&out)];
     json(CONTACT, &[&[scene("flat_punch.toml").as_str()], &limits[..]].concat());
-    assert!(out.join("counter_surface.csv").exists() && out.join("figures/pressure.svg").exists());
+    assert!(out.join("obstacle.csv").exists() && out.join("figures/pressure.svg").exists());
     let resumed = json(CONTACT, &["--resume", text(&out), "--max-evaluations", "4", "--json"]);
     assert_eq!(resumed["evaluations"], 4);
     assert_eq!(resumed["resumed_evaluations"], 2);
@@ -61,7 +61,7 @@ fn what_is_no_scene_is_refused_with_the_file_and_the_field() {
     let hertz = std::fs::read_to_string(scene("hertz.toml")).unwrap();
     for (right, wrong, words) in [
         ("friction = 0.3", "frction = 0.3", ["bad.toml", "did you mean `friction`?"]),
-        ("[2, 2, 2]", "[2, 2, 5]", ["bad.toml: mesh.subdomains[2] = 5", "divisor of the 12"]),
+        ("[2, 2, 2]", "[2, 2, 5]", ["bad.toml: body[0].block.subdomains[2] = 5", "divisor of the 12"]),
         (
             "radius = 20.0",
             "radius = 2.0",

@@ -78,10 +78,10 @@ fn an_exported_mesh_keeps_surfaces_between_cells_and_tags_of_groups() {
     let folder = kit::scratch();
     std::fs::write(folder.path().join("layers.msh"), LAYERS).unwrap();
     let scene = folder.path().join("layers.toml");
-    let fields = "name = \"layers\"\nfriction = 0.2\ncontact = { face = \"head\" }\n\
-        counter_surface = { form = \"plane\", height = 9.5 }\n[body]\nmesh = \"layers.msh\"\n\
+    let fields = "name = \"layers\"\nfriction = 0.2\n\n\
+        [[contact]]\nslave = { face = \"head\" }\nobstacle = { form = \"plane\", height = 9.5 }\n[[body]]\nmesh = \"layers.msh\"\n\
         material = { young_modulus = 1e5, poisson_ratio = 0.3 }\nsupports = [{ face = \"foot\", held = [\"u1\", \"u2\", \"u3\"] }]\n\
-        [lattice]\ncontrol_points = [2, 2, 2]\nfixed = [\"between\"]\ndisplacement = [-1.0, 1.0]\n";
+        [body.lattice]\ncontrol_points = [2, 2, 2]\nfixed = [\"between\"]\ndisplacement = [-1.0, 1.0]\n";
     std::fs::write(&scene, fields).unwrap();
     let out = folder.path().join("shape");
     kit::json(CONTACT, &[text(&scene), "export", "--out", text(&out), "--json"]);

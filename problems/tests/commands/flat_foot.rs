@@ -44,7 +44,7 @@ fn codes(result: &Value) -> Vec<&str> {
 /// Loaded evenly, the flat foot has its peak in the corners. In sums over nodes, those on edges count twice their area.
 #[test]
 fn an_even_load_is_spread_by_the_integral_and_not_by_the_sum_over_nodes() {
-    let load = "[[lower.loads]]\nface = \"x1-max\"\ntraction = [0, 0, 5]\n";
+    let load = "[[body.loads]]\nface = \"x1-max\"\ntraction = [0, 0, 5]\n";
     let peaks = |weight: &str| {
         let result = changed("foot", &[(load, ""), ("\"nodes\"", weight)], &[]);
         [0, 1].map(|index| result["peak_pressure"][index].as_f64().unwrap())
@@ -93,7 +93,7 @@ fn a_uniform_pressure_has_the_least_integral_on_every_mesh() {
 /// All nodes of one brick lie on an edge.
 #[test]
 fn a_uniform_pressure_on_one_brick_has_no_peak_at_an_edge() {
-    let held = "face = \"x1-min\"\nheld = [\"u1\"]\n[[lower.supports]]\nface = \"x2-min\"\nheld = [\"u2\"]";
+    let held = "face = \"x1-min\"\nheld = [\"u1\"]\n[[body.supports]]\nface = \"x2-min\"\nheld = [\"u2\"]";
     let changes =
         [(held, "face = \"bottom\"\nheld = [\"u1\", \"u2\"]"), ("poisson_ratio = 0.3", "poisson_ratio = 0.0")];
     let result = changed("uniform", &changes, &["evaluate", "--mesh", "1"]);

@@ -38,7 +38,7 @@ fn limits_that_mean_nothing_are_refused_by_their_field() {
         (vec!["--set", "limit=[{quantity=\"stress\", at_most=1, at_least=1}]"], "limit[0].at_least"),
         (vec!["--set", "case=[{name=\"\"}]"], "case[0].name"),
         (vec!["--set", "case=[{name=\"a\"}, {name=\"a\"}]"], "case[1].name"),
-        (vec!["--set", "case=[{name=\"a\", upper={}}]"], "case[0].upper"),
+        (vec!["--set", "case=[{name=\"a\", body=[{}]}]"], "case[0].body[0]"),
         (vec!["--set", "case=[{name=\"a\", loads=[]}]"], "case[0].loads"),
         (vec!["--set", &format!("limit=[{one}, {one}]")], "limit[1].quantity"),
     ] {

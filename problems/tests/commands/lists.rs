@@ -59,26 +59,6 @@ fn written(folder: &Path) -> String {
     text(&path).to_owned()
 }
 
-/// Options of the short form act on the bodies of a list, with the results of the short form to the last bit.
-#[test]
-fn a_scene_of_lists_has_the_results_of_its_short_form() {
-    let lists = scene("hertz_bodies");
-    for options in [
-        &["--mesh", "4", "--subdomains", "2"][..],
-        &["--mesh", "3x4x2", "--friction", "0.1", "--load-factor", "0.5"],
-        &["--mesh", "4", "--young-modulus", "1e5", "--poisson-ratio", "0.4", "--formulation", "mean-dilatation"],
-        &["--mesh", "4", "--surface", "bspline:2", "--control-points", "4x5"],
-        &["--mesh", "4", "--set", "upper.loads[1].traction=[400, 0, -1900]"],
-    ] {
-        let short = json(HERTZ, &[&["evaluate", "--json"], options].concat());
-        let found = json(CONTACT, &[&[lists.as_str(), "evaluate", "--json"], options].concat());
-        for key in ["objective", "subgradient", "peak_pressure", "status", "warnings"] {
-            assert_eq!(found[key], short[key], "{options:?}: {key}");
-        }
-    }
-    kit::refused(CONTACT, &[&lists, "evaluate", "--subdomains", "5"], &["--subdomains = 5", "a divisor of the 12"]);
-}
-
 #[test]
 fn the_controls_of_several_bodies_are_one_list() {
     let folder = scratch();
@@ -134,8 +114,8 @@ fn what_several_bodies_do_not_have_is_refused_with_what_to_set() {
         ),
         (&["export", "--friction-problem", "--out", text(&out)], ["contact[1].tied = true", "no glued faces"]),
         (&["evaluate", "--subdomains", "3"], ["--subdomains = 3", "a divisor of the 4 bricks"]),
-        (&["evaluate", "--set", "body[2].block.top.height=9"], ["cap.top = 9", "above the bottom"]),
-        (&["evaluate", "--set", "mesh.bricks=1.5"], ["mesh.bricks", "integer"]),
+        (&["evaluate", "--set", "body[2].block.top.height=9"], ["cap.block.top = 9", "above the bottom"]),
+        (&["evaluate", "--set", "body[0].block.bricks=1.5"], ["body[0].block.bricks", "integer"]),
     ] {
         kit::refused(CONTACT, &[&[scene.as_str()], options].concat(), &words);
     }

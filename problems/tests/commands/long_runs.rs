@@ -294,7 +294,7 @@ fn a_changed_scene_and_another_version_are_refused_on_resume() {
     let resume = ["--resume", text(&folder), "--json", "--max-evaluations", "6"];
     let changes = [
         ("scene.toml", "friction = ", "friction = 1", "friction"),
-        ("counter_surface.csv", ",", ",1", "counter_surface.csv"),
+        ("obstacle.csv", ",", ",1", "obstacle.csv"),
         ("start.json", ".", "1.", "start.json"),
         ("journal.jsonl", env!("CARGO_PKG_VERSION"), "0.0.7", "--new-version"),
     ];

@@ -81,9 +81,9 @@ fn scenes_that_cannot_stand_are_told_so() {
         json(CONTACT, &[&[text(&scene), "look", "--json"], &set[..]].concat())["hints"].to_string()
     };
     for (set, words) in [
-        (&["counter_surface.point=[0.0,0.0,1.0]"][..], "contact nodes overlap what they touch, by up to"),
-        (&["counter_surface.point=[0.0,0.0,-5.0]"], "begin 4.92000 mm apart"),
-        (&["body.loads=[]", "counter_surface.point=[0.0,0.0,-5.0]"], "no load acts and nothing overlaps"),
+        (&["contact[0].obstacle.point=[0.0,0.0,1.0]"][..], "contact nodes overlap what they touch, by up to"),
+        (&["contact[0].obstacle.point=[0.0,0.0,-5.0]"], "begin 4.92000 mm apart"),
+        (&["body[0].loads=[]", "contact[0].obstacle.point=[0.0,0.0,-5.0]"], "no load acts and nothing overlaps"),
         (&["body.supports=[]"], "friction alone holds the body along x1, x2"),
         (&["body.supports=[]", "friction=0.0"], "nothing holds the body along x1, x2: add supports or friction"),
         (&["body.supports=[]", "body.loads=[{face=\"top\",force=[0.0,0.0,5.0]}]"], "do not press nose"),

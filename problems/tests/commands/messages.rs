@@ -49,11 +49,11 @@ fn any_field_can_be_set() {
     std::fs::write(&file, &changed).unwrap();
     let fields = [
         "--set",
-        "upper.material.young_modulus=1.5e5",
+        "body[1].material.young_modulus=1.5e5",
         "--set",
-        "upper.loads[1].traction=[400, 0, -1900]",
+        "body[1].loads[1].traction=[400, 0, -1900]",
         "--set",
-        "mesh.bricks=4x4x2",
+        "body[0].block.bricks=4x4x2",
         "--set",
         "solver.kind=direct",
     ];
@@ -66,20 +66,22 @@ fn any_field_can_be_set() {
         assert_eq!(set[key], stated[key], "{key}");
     }
     for (setting, words) in [
-        ("upper.material.young_modul=1", &["there is no field", "did you mean `young_modulus`?"][..]),
-        ("upper.material.young_modulus=-1", &["upper.material.young_modulus = -1", "≥ 1e-9 and ≤ 1e15 (MPa)"]),
+        ("body[1].material.young_modul=1", &["there is no field", "did you mean `young_modulus`?"][..]),
+        ("body[1].material.young_modulus=-1", &["body[1].material.young_modulus = -1", "≥ 1e-9 and ≤ 1e15 (MPa)"]),
         ("solver.kind=newtn", &["solver.kind = \"newtn\"", "\"newton\", \"direct\""]),
-        ("mesh.bricks=[6, 6]", &["mesh.bricks", "3 entries, each an integer ≥ 1 and ≤ 400"]),
-        ("upper.loads[7].face=top", &["upper.loads[7].face", "without gap"]),
-        ("counter_surface.form=cone", &["counter_surface.form = cone", "form = \"plane\""]),
+        ("body[0].block.bricks=[6, 6]", &["body[0].block.bricks", "3 entries, each an integer ≥ 1 and ≤ 400"]),
+        ("body[1].loads[7].face=top", &["body[1].loads[7].face", "without gap"]),
+        ("body[1].block.bottom.form=cone", &["body[1].block.bottom.form = cone", "form = \"plane\""]),
         ("friction.x=1", &["there is no field `friction.x`", "a finite number ≥ 0"]),
         ("friction", &["FIELD=VALUE"]),
-        ("mesh.subdomains=5", &["--set mesh.subdomains[0] = 5", "a divisor of the 12 bricks"]),
+        ("body[0].block.subdomains=5", &["--set body[0].block.subdomains[0] = 5", "a divisor of the 12 bricks"]),
     ] {
         kit::refused(HERTZ, &["evaluate", "--set", setting], words);
     }
-    let plane =
-        kit::json(HERTZ, &["evaluate", "--mesh", "2", "--set", "counter_surface={form=\"plane\",height=10}", "--json"]);
+    let plane = kit::json(
+        HERTZ,
+        &["evaluate", "--mesh", "2", "--set", "body[1].block.bottom={form=\"plane\",height=10}", "--json"],
+    );
     assert!(plane["peak_pressure"].as_f64().unwrap() > 0.0);
 }
 
@@ -114,10 +116,14 @@ fn fields_that_contradict_each_other_are_named_as_in_the_file() {
         (
             "minimum_height = ",
             "minimum_height = 40",
-            ["counter_surface at (0, 0) = ", "at least admissible.minimum_height"],
+            ["what lies opposite to top of lower at (0, 0) = ", "at least admissible.minimum_height"],
         ),
-        ("top = ", "top = -", ["upper.top = -", "above the counter surface, which has the height"]),
-        ("young_modulus = 2.1e5", "young_modulus = 2.1e-300", ["upper.material.young_modulus = 2.1e-300", "≥ 1e-9"]),
+        (
+            "top = { form = \"plane\", height = ",
+            "top = { form = \"plane\", height = -",
+            ["upper.block.top = -", "above the bottom, which has the height"],
+        ),
+        ("young_modulus = 2.1e5", "young_modulus = 2.1e-300", ["body[1].material.young_modulus = 2.1e-300", "≥ 1e-9"]),
         ("height = 10.0", "height = 10.5", ["surface.start: controls lie outside", "height of control"]),
     ] {
         assert!(hertz.contains(right), "{right}");

@@ -156,8 +156,12 @@ fn what_is_no_certificate_of_the_scene_is_refused() {
     );
     refused(&["recheck", run.path(), "--controls", "c.json"], 2, "--controls is allowed");
     // A surface with other controls is another scene.
-    refused(&["recheck", run.path(), "--mesh", "2", "--control-points", "5x5"], 1, "surface.control_points is [6,6]");
-    refused(&["recheck", run.path()], 1, "mesh.bricks is [2,2,2] in the run and [12,12,12] here");
+    refused(
+        &["recheck", run.path(), "--mesh", "2", "--control-points", "5x5"],
+        1,
+        "body[0].surface.control_points is [6,6]",
+    );
+    refused(&["recheck", run.path()], 1, "body[0].block.bricks is [2,2,2] in the run and [12,12,12] here");
     refused(&["recheck", run.path(), "--mesh", "2", "--friction", "0.2"], 1, "friction is 0.3 in the run and 0.2 here");
     std::fs::write(run.0.join("certificate.json"), "null").unwrap();
     refused(&["recheck", run.path()], 1, "has no certificate");

@@ -13,7 +13,7 @@ use tracing_subscriber::layer::SubscriberExt;
 /// What a listener hears of one state with its subgradient.
 fn heard(solver: SolverKind) -> Vec<String> {
     let mut file = SceneFile::parse(include_str!("../../scenes/signorini.toml"), "signorini.toml").unwrap();
-    file.mesh.bricks = [4; 3];
+    file.body[0].block.as_mut().unwrap().bricks = [4; 3];
     let mut case = Case::new(&file, Path::new("")).unwrap();
     case.solver = solver;
     let theta = objective(&case, &Processes::alone()).unwrap();

@@ -36,8 +36,12 @@ fn every_row_is_what_evaluate_finds() {
 /// A field that has no option is varied by its path.
 #[test]
 fn fields_are_varied_by_their_paths() {
-    let vary =
-        ["--vary", "lower.loads[0].traction=[0,0,1500],[0,0,3000]", "--vary", "lower.material.young_modulus=1e5:2e5:2"];
+    let vary = [
+        "--vary",
+        "body[0].loads[0].traction=[0,0,1500],[0,0,3000]",
+        "--vary",
+        "body[0].material.young_modulus=1e5:2e5:2",
+    ];
     let study = json(SIGNORINI, &[&["study", "--mesh", "4", "--json"], &vary[..]].concat());
     assert_eq!(rows(&study).len(), 4);
     for row in rows(&study) {
@@ -52,14 +56,14 @@ fn fields_are_varied_by_their_paths() {
     let table = String::from_utf8(table).unwrap();
     assert!(table.contains("solver.kind") && table.contains("newton ") && !table.contains("--set"), "{table}");
     for (vary, words) in [
-        ("lower.material.young_modul=1,2", "did you mean `young_modulus`?"),
-        ("lower.material.young_modulus=1,-2", "≥ 1e-9 and ≤ 1e15 (MPa)"),
+        ("body[0].material.young_modul=1,2", "did you mean `young_modulus`?"),
+        ("body[0].material.young_modulus=1,-2", "≥ 1e-9 and ≤ 1e15 (MPa)"),
         ("output.folder=a,b", "where results go"),
     ] {
         refused(SIGNORINI, &["study", "--vary", vary], &[words]);
     }
-    let twice = ["study", "--vary", "friction=0,1", "--vary", "mesh=2", "--vary", "mesh.bricks=4"];
-    refused(SIGNORINI, &twice, &["mesh.bricks", "once"]);
+    let twice = ["study", "--vary", "friction=0,1", "--vary", "mesh=2", "--vary", "body[0].block.bricks=4"];
+    refused(SIGNORINI, &twice, &["body[0].block.bricks", "once"]);
 }
 
 #[test]
@@ -87,7 +91,8 @@ fn a_mesh_beyond_the_memory_is_named_before_the_first_row() {
     let output = kit::run(SIGNORINI, &["study", "--vary", "mesh=2,400,4x4x2"]);
     let said = errors(&output);
     assert!(
-        said.contains("row 2 will fail: mesh.bricks = 400x400x400 bricks") && !said.contains("row 3 will fail"),
+        said.contains("row 2 will fail: body[0].block.bricks = 400x400x400 bricks")
+            && !said.contains("row 3 will fail"),
         "{said}"
     );
     assert!(

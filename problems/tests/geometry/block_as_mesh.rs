@@ -16,30 +16,30 @@ const MESH: &str = r#"
 name = "block-as-mesh"
 friction = 0.3
 
-[contact]
-face = "top"
-
-[body]
+[[body]]
 mesh = "MESH"
 pieces = 8
 material = { young_modulus = 1.1e5, poisson_ratio = 0.33 }
 supports = [{ face = "x1-min", held = ["u1", "u2"] }]
 loads = [{ face = "bottom", traction = [0.0, 0.0, 3000.0] }]
 
-[counter_surface]
-form = "waves"
-base = 103.0
-first = 1.0
-second = 2.0
-period = 100.0
-
-[lattice]
+[body.lattice]
 control_points = [6, 6, 2]
 box = [[0.0, 0.0, 0.0], [100.0, 100.0, 100.0]]
 directions = [3]
 frozen = [[0, 0], [0, 0], [1, 0]]
 displacement = [-2.0, 2.0]
 hold_supports = false
+
+[[contact]]
+slave = { face = "top" }
+
+[contact.obstacle]
+form = "waves"
+base = 103.0
+first = 1.0
+second = 2.0
+period = 100.0
 
 [objective]
 weight = "nodes"

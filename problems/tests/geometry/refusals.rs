@@ -23,7 +23,7 @@ fn said(right: &str, wrong: &str, options: &[&str]) -> (bool, String) {
 fn fields_that_mean_nothing_on_the_mesh_are_refused() {
     let plane = "normal = [0.05, -0.01, -1.0]";
     for (right, wrong, words) in [
-        ("face = \"nose\"", "face = \"nsoe\"", ["contact.face = \"nsoe\"", "did you mean \"nose\"?"]),
+        ("face = \"nose\"", "face = \"nsoe\"", ["contact[0].slave.face = \"nsoe\"", "did you mean \"nose\"?"]),
         ("face = \"wall\"", "face = \"wal\"", ["supports[0]", "did you mean \"wall\"?"]),
         ("face = \"top\"", "face = \"topp\"", ["loads[0].face", "did you mean \"top\"?"]),
         ("box = [[-20.0", "box = [[120.0", ["lattice.box", "least coordinates first"]),
@@ -32,8 +32,8 @@ fn fields_that_mean_nothing_on_the_mesh_are_refused() {
             "box = [[60.0, 0.0, 0.0], [80.0,",
             ["lattice", "around nodes that may move"],
         ),
-        (plane, "normal = [0.0, 0.0, 0.0]", ["counter_surface", "normal"]),
-        ("face = \"nose\"", "face = \"wall\"\narea = \"projected\"", ["contact.area", "no area"]),
+        (plane, "normal = [0.0, 0.0, 0.0]", ["contact[0].obstacle", "normal"]),
+        ("{ face = \"nose\" }", "{ face = \"wall\" }\narea = \"projected\"", ["contact[0].area", "no area"]),
         ("at_most = 1.0", "at_most = 0.5", ["limit[0].at_least", "at most"]),
         ("quantity = \"relative-volume\"", "quantity = \"mass\"", ["limit[0].quantity", "relative-volume"]),
         ("lug_hex8.msh", "lug_hex9.msh", ["lug_hex9.msh", "No such file"]),
@@ -45,9 +45,9 @@ fn fields_that_mean_nothing_on_the_mesh_are_refused() {
 
 #[test]
 fn options_of_blocks_are_refused_for_a_mesh() {
-    for (option, field) in [("--mesh", "mesh.bricks"), ("--subdomains", "mesh.subdomains")] {
+    for (option, field) in [("--mesh", "body[0].block.bricks"), ("--subdomains", "body[0].block.subdomains")] {
         let (refused, message) = said("friction = 0.3", "friction = 0.3", &[option, "4"]);
-        assert!(refused && message.contains(field) && message.contains("only for blocks"), "{message}");
+        assert!(refused && message.contains(field) && message.contains("a block of bricks"), "{message}");
     }
 }
 
@@ -55,8 +55,8 @@ fn options_of_blocks_are_refused_for_a_mesh() {
 #[test]
 fn sizes_and_strains_that_cannot_be_meant_are_doubted() {
     for (right, wrong, words) in [
-        ("[body]", "[body]\nunit = \"m\"", "is body.unit the unit of the mesh?"),
-        ("-800.0", "-8e7", "are body.unit, the loads (N, MPa) and young_modulus (MPa) what they should be?"),
+        ("[[body]]", "[[body]]\nunit = \"m\"", "is body[0].unit the unit of the mesh?"),
+        ("-800.0", "-8e7", "are body[0].unit, the loads (N, MPa) and young_modulus (MPa) what they should be?"),
     ] {
         let (_, message) = said(right, wrong, &[]);
         assert!(message.contains(words), "{wrong}: {message}");

@@ -11,35 +11,37 @@ use std::path::Path;
 /// A block of 6³ bricks with a spline of 6 × 6 heights.
 pub const BLOCK: &str = r#"
 name = "block"
-size = [100.0, 100.0]
 friction = 0.3
 
-[contact]
-
-[mesh]
-bricks = [6, 6, 6]
-subdomains = [2, 2, 2]
-
-[lower]
+[[body]]
+name = "lower"
 material = { young_modulus = 1.1e5, poisson_ratio = 0.33 }
 supports = [{ face = "x1-min", held = ["u1", "u2"] }]
 loads = [{ face = "bottom", traction = [0.0, 0.0, 3000.0] }]
 
-[counter_surface]
+[body.block]
+size = [100.0, 100.0]
+bricks = [6, 6, 6]
+subdomains = [2, 2, 2]
+
+[body.surface]
+control_points = [6, 6]
+start = { form = "plane", height = 100.0 }
+
+[body.admissible]
+minimum_height = 50.0
+slope = 5.0
+volume = [5e5, 2e6]
+
+[[contact]]
+slave = { face = "top" }
+
+[contact.obstacle]
 form = "waves"
 base = 103.0
 first = 1.0
 second = 2.0
 period = 100.0
-
-[surface]
-control_points = [6, 6]
-start = { form = "plane", height = 100.0 }
-
-[admissible]
-minimum_height = 50.0
-slope = 5.0
-volume = [5e5, 2e6]
 
 [objective]
 weight = "nodes"
@@ -50,26 +52,26 @@ const LUG: &str = r#"
 name = "lug"
 friction = 0.3
 
-[contact]
-face = "nose"
-
-[body]
+[[body]]
 mesh = "MESH"
 pieces = 5
 material = { young_modulus = 7e4, poisson_ratio = 0.35 }
 supports = [{ face = "wall", held = ["u1", "u2"] }]
 loads = [{ face = "top", traction = [0.0, 0.0, -800.0] }]
 
-[counter_surface]
-form = "tilted-plane"
-point = [0.0, 0.0, -0.05]
-normal = [0.05, -0.01, -1.0]
-
-[lattice]
+[body.lattice]
 control_points = [3, 3, 3]
 box = [[-20.0, 0.0, 0.0], [20.0, 30.0, 40.0]]
 displacement = [-2.0, 2.0]
 hold_supports = false
+
+[[contact]]
+slave = { face = "nose" }
+
+[contact.obstacle]
+form = "tilted-plane"
+point = [0.0, 0.0, -0.05]
+normal = [0.05, -0.01, -1.0]
 
 [objective]
 weight = "nodes"
@@ -97,7 +99,7 @@ pub fn text_of(published: &Value) -> String {
     let base =
         base.replace("friction = 0.3", &format!("friction = {:?}", published["friction"].as_f64().expect("a number")));
     let base =
-        if published["projected"] == true { base.replace("[contact]", "[contact]\nnormal = \"x3\"") } else { base };
+        if published["projected"] == true { base.replace("[[contact]]", "[[contact]]\nnormal = \"x3\"") } else { base };
     let obstacle = &published["obstacle"];
     let vector = |key: &str| format!("{}", obstacle[key]);
     let counter = match obstacle["type"].as_str() {
@@ -112,10 +114,10 @@ pub fn text_of(published: &Value) -> String {
         Some("plane") => format!("form = \"tilted-plane\"\npoint = {}\nnormal = {}", vector("point"), vector("normal")),
         _ => return base,
     };
-    let (before, rest) = base.split_once("[counter_surface]").expect("a table");
+    let (before, rest) = base.split_once("[contact.obstacle]").expect("a table");
     let (_, after) = rest.split_once("\n\n").expect("a table after it");
     // Integers are no numbers of TOML fields.
-    format!("{before}[counter_surface]\n{counter}\n\n{after}")
+    format!("{before}[contact.obstacle]\n{counter}\n\n{after}")
 }
 
 /// Θ of a case by a solver.

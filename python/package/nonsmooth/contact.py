@@ -199,20 +199,21 @@ class Scene:
     Parameters
     ----------
     **fields
-        The fields of a scene file, nested sections as dicts: ``Scene(name="punch", size=[10, 10], friction=0.3,
-        lower={...}, ...)``. The page docs/scenes.md of the repository lists them; a bad one is named with what is
+        The fields of a scene file, tables as dicts: ``Scene(name="punch", friction=0.3, body=[{...}], contact=[{...}],
+        ...)``. The page docs/scenes.md of the repository lists them; a bad one is named with what is
         allowed. Mandatory are those that have no default there.
 
     Examples
     --------
     >>> scene = Scene(
-    ...     name="block", size=[10.0, 10.0], friction=0.2, mesh={"bricks": [2, 2, 2], "subdomains": [1, 1, 1]},
-    ...     lower={"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
+    ...     name="block", friction=0.2,
+    ...     body=[{"block": {"size": [10.0, 10.0], "bricks": [2, 2, 2], "subdomains": [1, 1, 1]},
+    ...            "material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
     ...            "loads": [{"face": "bottom", "traction": [0.0, 0.0, 100.0]}],
-    ...            "supports": [{"face": "x1-min", "held": ["u1", "u2"]}]},
-    ...     counter_surface={"form": "plane", "height": 10.5},
-    ...     surface={"control_points": [4, 4], "start": {"form": "plane", "height": 10.0}},
-    ...     admissible={"minimum_height": 5.0, "slope": 1.0, "volume": [500.0, 1500.0]})
+    ...            "supports": [{"face": "x1-min", "held": ["u1", "u2"]}],
+    ...            "surface": {"control_points": [4, 4], "start": {"form": "plane", "height": 10.0}},
+    ...            "admissible": {"minimum_height": 5.0, "slope": 1.0, "volume": [500.0, 1500.0]}}],
+    ...     contact=[{"slave": {"face": "top"}, "obstacle": {"form": "plane", "height": 10.5}}])
     >>> round(scene.evaluate().total_force)  # 100 MPa on 10 mm x 10 mm
     10000
     """
@@ -230,9 +231,10 @@ class Scene:
 
     @classmethod
     def from_toml(cls, path, **fields):
-        """The scene of a file, with fields changed: ``Scene.from_toml("hertz.toml", friction=0.5, mesh={"bricks": [6, 6, 6]})``.
+        """The scene of a file, with fields changed: ``Scene.from_toml("hertz.toml", friction=0.5)``.
 
-        A field replaces that of the file as a whole, nested tables included, as the option ``--set`` does; ``None`` removes it.
+        A field replaces that of the file as a whole, nested tables included, as the option ``--set`` does; ``None`` removes it. Paths
+        name fields of bodies and contacts: ``Scene.from_toml("signorini.toml", **{"body[0].block.bricks": [6, 6, 6]})``.
 
         Parameters
         ----------
@@ -257,7 +259,7 @@ class Scene:
         Parameters
         ----------
         nodes : array_like, (n, 3)
-            Positions of the nodes, mm, or in ``body["unit"]``. Each belongs to a cell.
+            Positions of the nodes, mm, or in ``unit`` of the body. Each belongs to a cell.
         cells : array_like of int, (m, 8) or (m, 10)
             Numbers of the nodes of the cells, from 0, in the order of Gmsh; tetrahedra of four nodes (m, 4) get those in the middles of
             their edges. meshio has another order for tetrahedra of ten nodes: its last two columns change places.
@@ -266,7 +268,7 @@ class Scene:
         path : path, optional
             A scene file of another mesh, whose place this one takes.
         **fields
-            Fields of the scene, as for `Scene`; ``body`` is one without ``mesh``.
+            Fields of the scene, as for `Scene`; its only body has no ``mesh``.
 
         Returns
         -------
@@ -278,12 +280,12 @@ class Scene:
         >>> corners = [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
         >>> scene = Scene.from_mesh(
         ...     corners, [range(8)], {"foot": [[0, 1, 2, 3]], "head": [[4, 5, 6, 7]], "side": [[0, 3, 7, 4]]},
-        ...     name="one cell", friction=0.2, contact={"face": "head"},
-        ...     body={"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
-        ...           "loads": [{"face": "foot", "force": [0.0, 0.0, 500.0]}],
-        ...           "supports": [{"face": "side", "held": ["u1", "u2"]}]},
-        ...     counter_surface={"form": "plane", "height": 10.5},
-        ...     lattice={"control_points": [2, 2, 2], "displacement": [-1.0, 1.0]})
+        ...     name="one cell", friction=0.2,
+        ...     body=[{"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
+        ...            "loads": [{"face": "foot", "force": [0.0, 0.0, 500.0]}],
+        ...            "supports": [{"face": "side", "held": ["u1", "u2"]}],
+        ...            "lattice": {"control_points": [2, 2, 2], "displacement": [-1.0, 1.0]}}],
+        ...     contact=[{"slave": {"face": "head"}, "obstacle": {"form": "plane", "height": 10.5}}])
         >>> state = scene.evaluate()
         >>> (state.areas[:, None] * state.tractions).sum(axis=0).round(6).tolist()[2]
         500.0

@@ -99,9 +99,9 @@ impl ContactProblem {
     fn leave_out_held_nodes(&mut self) -> Result<(), SceneError> {
         let refused = |error: ContactError| {
             SceneError::out_of_range(
-                "counter_surface",
+                "obstacle",
                 error,
-                "a surface with a normal at every contact node; contact.normal = \"x3\" asks for none",
+                "a surface with a normal at every contact node; normal = \"x3\" of a contact asks for none",
             )
         };
         let start = self.start_positions();
@@ -134,11 +134,7 @@ impl ContactProblem {
         let place = self.bodies[point.body].mesh.nodes()[point.node as usize];
         let value = format!("{} at the contact node at {place:?}, which a support moves", point.friction);
         let allowed = "0 there, or supports with prescribed displacements that do not reach the contact face";
-        let field = match self.scene.contacts.len() {
-            1 => "contact friction".to_owned(),
-            _ => format!("contact[{}].friction", point.contact),
-        };
-        Err(SceneError::out_of_range(field, value, allowed))
+        Err(SceneError::out_of_range(format!("contact[{}].friction", point.contact), value, allowed))
     }
 
     /// Number of entries of the displacements of all bodies: three per node, in the order of the scene.

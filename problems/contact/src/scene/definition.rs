@@ -105,12 +105,12 @@ impl Scene {
 
     /// What messages call a contact.
     pub(crate) fn contact_field(&self, index: usize) -> String {
-        if self.contacts.len() == 1 { "contact".into() } else { format!("contact[{index}]") }
+        format!("contact[{index}]")
     }
 
     /// What messages call the obstacle of a contact.
     pub(crate) fn obstacle_field(&self, index: usize) -> String {
-        if self.contacts.len() == 1 { "counter_surface".into() } else { format!("contact[{index}].obstacle") }
+        format!("contact[{index}].obstacle")
     }
 
     /// What lies opposite to a face of a body in a contact where sides may part; none where it has no heights.
@@ -211,7 +211,7 @@ impl Scene {
                 refused("\"surface\"", "\"x3\" with a punch, which has a step")
             }
             NormalKind::X3 if !surface.has_heights() => {
-                refused("\"x3\"", "\"surface\" with a counter surface that is no height over x1 and x2")
+                refused("\"x3\"", "\"surface\" with an obstacle that is no height over x1 and x2")
             }
             _ => Ok(()),
         }
@@ -229,7 +229,7 @@ impl Scene {
             }
             (Geometry::Mesh(_), None) => Ok(()),
             (Geometry::Block(block), heights) => {
-                block.validate(&body.name)?;
+                block.validate(&format!("{}.block", body.name))?;
                 if let Some(heights) = heights {
                     self.validate_heights(index, block, heights)?;
                 }
@@ -248,10 +248,7 @@ impl Scene {
         let allowed = "the smallest volume, then the largest (mm³)";
         SceneError::require(least <= largest, "admissible.volume", volume, allowed)?;
         let Some(Opposite::Heights(surface)) = self.opposite(index, heights.face) else { return Ok(()) };
-        let what = match self.contacts.len() {
-            1 => "counter_surface".to_owned(),
-            _ => format!("what lies opposite to {} of {}", heights.face.block_face().name(), self.bodies[index].name),
-        };
+        let what = format!("what lies opposite to {} of {}", heights.face.block_face().name(), self.bodies[index].name);
         let place = |[x1, x2]: [f64; 2]| format!("{what} at ({x1}, {x2})");
         let finite = "finite heights over the whole base";
         for at in heights.surface()?.places(block.size).map(|at| block.grid().moved(at)) {
@@ -281,10 +278,10 @@ impl Scene {
         for at @ [x1, x2] in block.grid().places() {
             let bottom = start(ShapedFace::Bottom, &block.bottom, at);
             let top = start(ShapedFace::Top, &block.top, at);
-            let place = || format!("{name}.bottom at ({x1}, {x2})");
+            let place = || format!("{name}.block.bottom at ({x1}, {x2})");
             SceneError::require(bottom.is_finite(), place(), bottom, "finite heights over the whole base")?;
             let allowed = format!("above the bottom, which has the height {bottom} mm at ({x1}, {x2})");
-            SceneError::require(top > bottom, format!("{name}.top"), top, allowed)?;
+            SceneError::require(top > bottom, format!("{name}.block.top"), top, allowed)?;
         }
         let faces = self.contacts.iter().flat_map(ContactScene::faces);
         let contact: Vec<&str> = faces.filter(|face| face.body == index).map(|face| face.face.as_str()).collect();

@@ -79,10 +79,9 @@ fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScen
         loaded.changed(|scene| {
             if is_frictionless {
                 scene.friction = 0.0;
-                scene.contact.one_mut().into_iter().for_each(|contact| contact.regions.clear());
-                for pair in scene.contact.several_mut() {
-                    pair.friction = None;
-                    pair.regions.clear();
+                for contact in &mut scene.contact {
+                    contact.friction = None;
+                    contact.regions.clear();
                 }
                 scene.case.iter_mut().for_each(|case| case.friction = None);
             }

@@ -43,10 +43,8 @@ const UNITS: [&str; 2] = [
 /// What the numbers of the lists are, with the names of the bodies.
 fn units(scene: &Scene) -> String {
     let names = scene.bodies.iter().enumerate().map(|(number, body)| format!("{number} {}", body.name));
-    let names =
-        if scene_words::is_short(scene) { "0 lower, 1 upper".into() } else { names.collect::<Vec<_>>().join(", ") };
     let [before, after] = UNITS;
-    format!("{before}{names}{after}")
+    format!("{before}{}{after}", names.collect::<Vec<_>>().join(", "))
 }
 
 /// Refuses a mesh whose matrices would be too large, and faces that are glued.
@@ -60,14 +58,13 @@ pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
         let allowed = "no glued faces with --friction-problem: its equations are those of contact that may open";
         return Err(SceneError::out_of_range(format!("contact[{contact}].tied"), true, allowed));
     }
-    let (field, found) = match scene.bodies[0].block() {
-        _ if !scene_words::is_short(scene) => ("body", scene_words::mesh(scene)),
-        Some(block) => ("mesh.bricks", format!("{:?}", block.bricks)),
-        None => ("body.mesh", scene_words::mesh(scene)),
-    };
     let allowed =
         format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
-    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range(field, found, allowed)) }
+    if most <= MOST_UNKNOWNS {
+        Ok(())
+    } else {
+        Err(SceneError::out_of_range("body", scene_words::mesh(scene), allowed))
+    }
 }
 
 /// The matrices of a shape.

@@ -9,7 +9,6 @@ use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::stages::{MeshStage, last_begun, stages};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{Difference, differences, is_below};
-use crate::commands::scene_words;
 use contact::error::SceneError;
 use contact::scene::{Block, BodyScene, CounterSurface, Scene};
 use contact::shape::ShapedFace;
@@ -247,7 +246,7 @@ fn other_files(there: &Scene, here: &Scene) -> Option<String> {
         return Some(format!("it has {} bodies, this scene has {}", bodies.len(), others.len()));
     }
     if obstacle(there) != obstacle(here) || bodies.iter().map(faces).ne(others.iter().map(faces)) {
-        return Some("the heights of counter_surface differ".to_owned());
+        return Some("the heights of an obstacle or of a face of a block differ".to_owned());
     }
     bodies.iter().map(meshes).ne(others.iter().map(meshes)).then(|| "the meshes differ".to_owned())
 }
@@ -255,15 +254,10 @@ fn other_files(there: &Scene, here: &Scene) -> Option<String> {
 /// The bricks of blocks that a run has other than the scene of the command.
 fn other_bricks(there: &Scene, here: &Scene) -> Vec<Difference> {
     let bricks = |body: &BodyScene| body.block().map_or_else(Vec::new, |block| block.bricks.to_vec());
-    let field = |body: usize| match scene_words::is_short(here) {
-        true => "mesh.bricks".to_owned(),
-        false => format!("body[{body}].block.bricks"),
-    };
+    let field = |body: usize| format!("body[{body}].block.bricks");
     let pairs = there.bodies.iter().map(bricks).zip(here.bodies.iter().map(bricks)).enumerate();
     let found = pairs.filter(|(_, (there, here))| there != here);
-    // Both blocks of the short form have the same bricks.
-    let count = if scene_words::is_short(here) { 1 } else { usize::MAX };
-    found.take(count).map(|(body, (there, here))| Difference::new(&field(body), there, here)).collect()
+    found.map(|(body, (there, here))| Difference::new(&field(body), there, here)).collect()
 }
 
 /// The evaluations of a journal whose value is known.

@@ -47,7 +47,7 @@ impl Identity {
         let mut scene = loaded.file.clone();
         let mut contents = BTreeMap::from([(START.to_owned(), hash(json(initial_controls)?.as_bytes()))]);
         // The start is known by its controls.
-        if let Some(surface) = &mut scene.surface {
+        for surface in scene.body.iter_mut().filter_map(|body| body.surface.as_mut()) {
             surface.start = StartSection::Controls { heights: vec![] };
         }
         for (name, file) in scene.files_mut() {

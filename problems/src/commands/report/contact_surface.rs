@@ -90,10 +90,7 @@ impl ContactSurface {
         let (axes, normal) = plan_of(&places, &faces);
         let label = scene_words::contact_label(scene, contact);
         let suffix = if label.is_empty() { String::new() } else { format!("_contact_{}", contact + 1) };
-        let owner = match scene_words::is_short(scene) {
-            true => "contact surface of the lower body".to_owned(),
-            false => format!("contact surface {} of {}", side.face, scene.bodies[body].name),
-        };
+        let owner = format!("contact surface {} of {}", side.face, scene.bodies[body].name);
         Self {
             contact,
             body,

@@ -8,7 +8,6 @@ use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::report::{ContactSurface, Relief};
-use crate::commands::scene_words;
 use crate::commands::shape_facts::is_better;
 use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
@@ -120,10 +119,9 @@ impl Picture {
     /// The contact surfaces of a shape: slave faces with their pressures, and other faces that controls move.
     fn all(objective: &ContactObjective, shape: &SolvedShape) -> Vec<Self> {
         let problem = objective.solver().problem();
-        let is_short = scene_words::is_short(&problem.scene);
         let of = |surface: &ContactSurface| Self {
             suffix: surface.suffix.clone(),
-            owner: if is_short { String::new() } else { surface.owner.clone() },
+            owner: if surface.label.is_empty() { String::new() } else { surface.owner.clone() },
             axes: surface.axis_names(),
             plan: surface.plan(),
             faces: surface.faces(),

@@ -22,9 +22,8 @@ const SCENE: &str = r#"
 name = "changes"
 solver = { kind = "direct" }
 friction = 0.0
-[contact]
-face = "bottom"
-[body]
+
+[[body]]
 mesh = "changed.msh"
 material = { young_modulus = 2e5, poisson_ratio = 0.3 }
 materials = [{ volume = "upper", young_modulus = 7e4, poisson_ratio = 0.25 }]
@@ -34,15 +33,20 @@ loads = [
   { face = "right", traction = [3.0, 2.0, -5.0] },
   { volume = "upper", body_force = [0.0, 0.0, -1.0] },
 ]
-[counter_surface]
-form = "tilted-plane"
-point = [0.0, 0.0, 0.0]
-normal = [0.1, 0.05, -1.0]
-[lattice]
+
+[body.lattice]
 control_points = [2, 2, 2]
 directions = [3]
 fixed = ["rim", "between"]
 displacement = [-0.1, 0.1]
+
+[[contact]]
+slave = { face = "bottom" }
+
+[contact.obstacle]
+form = "tilted-plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.1, 0.05, -1.0]
 "#;
 
 /// A place by the bits of its coordinates.

@@ -1,11 +1,10 @@
-//! The scene of a file with lists of bodies and of contacts.
+//! From the bodies and contacts of a scene file to a scene.
 
-use crate::either::Either;
-use crate::mesh_file::{self, MeshFile};
-use crate::scene_parts::{Parts, required};
-use crate::shapes::{counter_surface, heights};
-use crate::short_form::{default_subdomains, doubts_of_unit};
-use crate::{BlockSection, FaceSection, MeshSection, PairSection, PartSection, SceneFile, bodies};
+use crate::bodies::default_subdomains;
+use crate::mesh_check::doubts_of_unit;
+use crate::mesh_file::MeshFile;
+use crate::shapes::{heights, obstacle};
+use crate::{BlockSection, BodySection, ContactSection, FaceSection, SceneFile, UnitName, loading};
 use contact::error::SceneError;
 use contact::names::{find, find_face};
 use contact::scene::{
@@ -16,43 +15,43 @@ use contact::shape::{HeightShape, ShapeScene, ShapedFace};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene of a file whose bodies are a list.
-pub(crate) fn general_scene(file: &SceneFile, bodies: &[PartSection], folder: &Path) -> Result<Parts, SceneError> {
-    for (field, given) in [
-        ("size", file.size.is_some()),
-        ("lower", file.lower.is_some()),
-        ("upper", file.upper.is_some()),
-        ("counter_surface", file.counter_surface.is_some()),
-        ("surface", file.surface.is_some()),
-        ("admissible", file.admissible.is_some()),
-        ("lattice", file.lattice.is_some()),
-        ("mesh", file.mesh != MeshSection::default()),
-    ] {
-        if given {
-            let allowed = "none beside [[body]]: bodies have their own block with bricks, surface, admissible and \
-                           lattice, contacts their own obstacle";
-            return Err(SceneError::out_of_range(field, "a value", allowed));
-        }
-    }
-    let Either::Several(pairs) = &file.contact else {
-        return Err(SceneError::out_of_range(
-            "contact",
-            "a table",
-            "[[contact]] beside [[body]]: one table per contact",
-        ));
-    };
+/// A scene with what goes beside it.
+pub(crate) struct Parts {
+    pub scene: Scene,
+    /// Controls at the start, mm, where they are not those of the scene.
+    pub start: Option<Vec<f64>>,
+    /// What is to be said of files before any work.
+    pub notes: Vec<String>,
+}
+
+/// Where files and meshes of a scene file come from.
+pub(crate) struct Sources<'a> {
+    /// The folder of files that the scene names.
+    pub folder: &'a Path,
+    /// The mesh that `body.mesh` names, in this unit.
+    pub mesh: &'a dyn Fn(&str, UnitName) -> Result<MeshFile, SceneError>,
+}
+
+/// A field that a scene must have here.
+pub(crate) fn required<'f, T>(field: &str, value: Option<&'f T>, allowed: &str) -> Result<&'f T, SceneError> {
+    value.ok_or_else(|| SceneError::out_of_range(field, "missing", allowed))
+}
+
+/// The scene of a file.
+pub(crate) fn scene_of(file: &SceneFile, sources: &Sources<'_>) -> Result<Parts, SceneError> {
     let (mut found, mut start, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     let mut starts_elsewhere = false;
-    for (index, section) in bodies.iter().enumerate() {
+    for (index, section) in file.body.iter().enumerate() {
         let at = format!("body[{index}]");
-        let (body, controls) = part(&at, section, folder, &mut notes)?;
+        let name = section.name(&at, file.body.len())?;
+        let (body, controls) = body(&at, &name, section, sources, &mut notes)?;
         starts_elsewhere |= controls.is_some();
         start.extend(controls.unwrap_or_else(|| body.shape.as_ref().map_or_else(Vec::new, ShapeScene::start)));
         found.push(body);
     }
     let mut contacts = Vec::new();
-    for (index, section) in pairs.iter().enumerate() {
-        contacts.push(pair(&format!("contact[{index}]"), section, (file, &found), folder, &mut notes)?);
+    for (index, section) in file.contact.iter().enumerate() {
+        contacts.push(contact(&format!("contact[{index}]"), section, (file, &found), sources.folder, &mut notes)?);
     }
     if !contacts.is_empty() && contacts.iter().all(ContactScene::is_tied) {
         let allowed = "at least one contact that may open: without one, no shape has a contact pressure";
@@ -63,10 +62,11 @@ pub(crate) fn general_scene(file: &SceneFile, bodies: &[PartSection], folder: &P
 }
 
 /// A body, and its controls at the start where they are not those of the scene.
-fn part(
+fn body(
     at: &str,
-    section: &PartSection,
-    folder: &Path,
+    name: &str,
+    section: &BodySection,
+    sources: &Sources<'_>,
     notes: &mut Vec<String>,
 ) -> Result<(BodyScene, Option<Vec<f64>>), SceneError> {
     let refused = |field: &str, allowed: &str| {
@@ -80,7 +80,7 @@ fn part(
         (Some(surface), Some(block)) => {
             let field = format!("{at}.admissible");
             let admissible = required(&field, section.admissible.as_ref(), "a table, for the bounds of the surface")?;
-            Some(heights((surface, admissible), block.size, folder)?)
+            Some(heights((surface, admissible), block.size, sources.folder)?)
         }
         (None, _) => {
             if section.admissible.is_some() {
@@ -90,9 +90,12 @@ fn part(
         }
     };
     let geometry = match (&section.block, &section.mesh) {
-        (Some(block), None) => Geometry::Block(block_of(at, block, shaped.as_ref().map(|(shape, _)| shape), folder)?),
+        (Some(block), None) => {
+            let shape = shaped.as_ref().map(|(shape, _)| shape);
+            Geometry::Block(block_of(&format!("{at}.block"), block, shape, sources.folder)?)
+        }
         (None, Some(file)) => {
-            let MeshFile { mesh, notes: own } = mesh_file::read(&folder.join(file), section.unit)?;
+            let MeshFile { mesh, notes: own } = (sources.mesh)(file, section.unit)?;
             notes.extend(own);
             Geometry::Mesh(MeshGeometry { mesh: Arc::new(mesh), pieces: section.pieces })
         }
@@ -101,8 +104,12 @@ fn part(
         }
         (None, None) => return Err(SceneError::out_of_range(at, "neither block nor mesh", "a block or a mesh")),
     };
-    let given = (section.material.clone(), section.materials.as_slice());
-    let mut body = bodies::body(&section.name, geometry, given, &section.supports, &section.loads)?;
+    let mut body = BodyScene {
+        materials: section.materials.iter().map(|own| own.material()).collect::<Result<_, SceneError>>()?,
+        supports: loading::supports(at, &section.supports)?,
+        loads: loading::loads(at, &section.loads)?,
+        ..BodyScene::new(name, geometry, section.material.material()?)
+    };
     let mut start = None;
     match (shaped, &section.lattice) {
         (Some(_), Some(_)) => refused("lattice", "a surface or a lattice, not both")?,
@@ -111,19 +118,19 @@ fn part(
         (None, None) => {}
     }
     if let Geometry::Mesh(geometry) = &body.geometry {
-        notes.extend(doubts_of_unit(&geometry.mesh, &body)?);
+        notes.extend(doubts_of_unit(at, &geometry.mesh, &body)?);
     }
     Ok((body, start))
 }
 
 fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder: &Path) -> Result<Block, SceneError> {
-    let face = |name: &str, face: ShapedFace, given: Option<&crate::CounterSection>| {
-        let (field, shaped) = (format!("{at}.block.{name}"), shaped.filter(|shape| shape.face == face));
+    let face = |name: &str, face: ShapedFace, given: Option<&crate::ObstacleSection>| {
+        let (field, shaped) = (format!("{at}.{name}"), shaped.filter(|shape| shape.face == face));
         match (given, shaped) {
             (Some(_), Some(_)) => {
                 Err(SceneError::out_of_range(field, "a table", "none: the surface of the body shapes this face"))
             }
-            (Some(section), None) => counter_surface(&field, section, Some(block.size), folder),
+            (Some(section), None) => obstacle(&field, section, Some(([0.0; 2], block.size)), folder),
             (None, Some(shape)) => Ok(CounterSurface::Plane { height: shape.start_height }),
             (None, None) if face == ShapedFace::Bottom => Ok(CounterSurface::Plane { height: 0.0 }),
             (None, None) => {
@@ -136,7 +143,7 @@ fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder
     for (axis, (bricks, count)) in block.bricks.iter().zip(subdomains).enumerate() {
         if !bricks.is_multiple_of(count) {
             let allowed = format!("a divisor of the {bricks} bricks per edge");
-            return Err(SceneError::out_of_range(format!("{at}.block.subdomains[{axis}]"), count, allowed));
+            return Err(SceneError::out_of_range(format!("{at}.subdomains[{axis}]"), count, allowed));
         }
     }
     Ok(Block {
@@ -149,24 +156,33 @@ fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder
     })
 }
 
-fn pair(
+fn contact(
     at: &str,
-    section: &PairSection,
+    section: &ContactSection,
     (file, bodies): (&SceneFile, &[BodyScene]),
     folder: &Path,
     notes: &mut Vec<String>,
 ) -> Result<ContactScene, SceneError> {
     let face = |field: &str, section: &FaceSection| {
         let names = bodies.iter().map(|body| body.name.as_str());
-        Ok::<_, SceneError>(BodyFace::new(find(&format!("{at}.{field}.body"), &section.body, names)?, &*section.face))
+        let body = match &section.body {
+            Some(name) => find(&format!("{at}.{field}.body"), name, names)?,
+            None if bodies.len() == 1 => 0,
+            None => {
+                let allowed = format!("one of {}", names.collect::<Vec<_>>().join(", "));
+                return Err(SceneError::out_of_range(format!("{at}.{field}.body"), "missing", allowed));
+            }
+        };
+        Ok(BodyFace::new(body, &*section.face))
     };
     let refused =
         |field: &str, allowed: &str| Err(SceneError::out_of_range(format!("{at}.{field}"), "a value", allowed));
     let (slave, master) = match (&section.slave, &section.master, &section.faces, &section.obstacle) {
         (Some(slave), Some(master), None, None) => (face("slave", slave)?, Master::Body(face("master", master)?)),
-        (Some(slave), None, None, Some(obstacle)) => {
-            let surface = counter_surface(&format!("{at}.obstacle"), obstacle, None, folder)?;
-            (face("slave", slave)?, Master::Obstacle(surface))
+        (Some(slave), None, None, Some(section)) => {
+            let slave = face("slave", slave)?;
+            let base = bodies[slave.body].block().map(|block| (block.corner, block.size));
+            (slave, Master::Obstacle(obstacle(&format!("{at}.obstacle"), section, base, folder)?))
         }
         (None, None, Some([first, second]), None) => {
             let both = [face("faces[0]", first)?, face("faces[1]", second)?];
