@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! numbers ─┬─ Map, Classes, Lines, LogPlot, Landscape, Convergence ─┬─ Figure ─┬─ svg
-//!          ├─ Sketch ─────────────────────────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
+//!          │                                                                └─ png (feature `png`: resvg, fonts of its own)
 //!          └─ Space ─ SpaceView: a view in three dimensions, which the script of a page draws (assets/viewer.js)
 //! scale (ticks), chart (axes), panel_layout (panels), marks (legends), plan (meshes in a plane), levels (areas),
-//! view (projection), layers (what covers what), oblique (bodies), regions (borders of areas), canvas (SVG text), packing (numbers of a SpaceView)
+//! view (direction of view), regions (borders of areas), canvas (SVG text), packing (numbers of a SpaceView)
 //! ```
 //! Bodies, surfaces and plans are points with triangles and quadrilaterals between them; [`grid_faces`] and
 //! [`box_faces`] are those of structured grids.
@@ -23,13 +23,11 @@ mod error;
 mod figure;
 mod grids;
 mod landscape;
-mod layers;
 mod levels;
 mod lines;
 mod log_plot;
 mod map;
 mod marks;
-mod oblique;
 mod packing;
 pub mod page;
 mod panel_layout;
@@ -38,7 +36,6 @@ mod plan;
 mod png;
 mod regions;
 mod scale;
-mod sketch;
 mod space;
 mod view;
 
@@ -52,6 +49,5 @@ pub use lines::{Curve, LinePanel, Lines};
 pub use log_plot::{LogPlot, Series};
 pub use map::{ColourScales, Map, MapPanel};
 pub use scale::{nice_below, number};
-pub use sketch::{Sign, Sketch, SketchBody, SketchMark};
 pub use space::{Space, SpaceBody, SpaceField, SpaceShape, SpaceState, SpaceView};
 pub use view::View;

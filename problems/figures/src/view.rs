@@ -1,16 +1,4 @@
-//! Directions from which bodies are seen, and places on the drawing, in orthographic projection.
-//!
-//! ```text
-//! towards the viewer  w = (cos ε cos α, cos ε sin α, sin ε)
-//! to the right        r = (−sin α, cos α, 0),   up  u = w × r = (−sin ε cos α, −sin ε sin α, cos ε)
-//! place on the drawing = scale · (p·r, −p·u),   depth = scale · p·w
-//! ```
-
-use super::canvas::Place;
-use super::scale::extent;
-
-/// A point in space.
-pub(super) type Point = [f64; 3];
+//! Directions from which bodies are seen: w = (cos ε cos α, cos ε sin α, sin ε) towards the viewer.
 
 /// Angle between the viewer and the face that is looked at, around the third axis.
 const TURN: f64 = 35.0_f64.to_radians();
@@ -55,50 +43,7 @@ impl View {
 
     /// Unit vector from the bodies towards the viewer.
     pub fn towards_viewer(&self) -> [f64; 3] {
-        self.directions()[2]
-    }
-
-    /// r, u and w of the head of the file.
-    fn directions(&self) -> [Point; 3] {
         let ((sin_turn, cos_turn), (sin_rise, cos_rise)) = (self.azimuth.sin_cos(), self.elevation.sin_cos());
-        [
-            [-sin_turn, cos_turn, 0.0],
-            [-sin_rise * cos_turn, -sin_rise * sin_turn, cos_rise],
-            [cos_rise * cos_turn, cos_rise * sin_turn, sin_rise],
-        ]
+        [cos_rise * cos_turn, cos_rise * sin_turn, sin_rise]
     }
-
-    /// Smallest and largest coordinates of points on a drawing of scale 1.
-    pub(super) fn bounds(self, points: impl Iterator<Item = Point> + Clone) -> [[f64; 2]; 2] {
-        let drawing = Projection { view: self, origin: [0.0; 2], scale: 1.0 };
-        let ends = |axis: usize| extent(points.clone().map(|point| drawing.place(point)[axis]));
-        [0, 1].map(|axis| ends(axis).map_or([0.0; 2], |(low, high)| [low, high]))
-    }
-}
-
-/// How points are placed on the drawing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Projection {
-    pub view: View,
-    /// Place of the point 0.
-    pub origin: Place,
-    /// Points of the drawing per unit of length.
-    pub scale: f64,
-}
-
-impl Projection {
-    /// Place of a point on the drawing.
-    pub fn place(&self, point: Point) -> Place {
-        let [right, up, _] = self.view.directions();
-        [self.origin[0] + self.scale * dot(point, right), self.origin[1] - self.scale * dot(point, up)]
-    }
-
-    /// How near a point is to the viewer, points of the drawing.
-    pub fn depth(&self, point: Point) -> f64 {
-        self.scale * dot(point, self.view.directions()[2])
-    }
-}
-
-pub(super) fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -3,7 +3,7 @@
 
 use figures::{
     ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, Landscape, LinePanel, Lines, LogPlot, Map, MapPanel,
-    Series, Sign, Sketch, SketchBody, SketchMark, Step, View, Visit, box_faces, grid_faces,
+    Series, Step, Visit, grid_faces,
 };
 
 fn title() -> String {
@@ -108,27 +108,9 @@ fn lines_and_classes() -> [Figure; 2] {
     [lines.figure(), classes.figure()].map(|figure| figure.expect("numbers"))
 }
 
-fn bodies() -> Figure {
-    let corner = |node: u8| [f64::from(node >> 2 & 1), f64::from(node >> 1 & 1), f64::from(node & 1)];
-    let points: Vec<[f64; 3]> = (0..8).map(corner).collect();
-    let faces = box_faces([2; 3]);
-    let mark =
-        |sign| SketchMark { sign, text: "u₁ = 0 & <more>".into(), lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]] };
-    let sketch = Sketch {
-        name: "sketch".into(),
-        title: title(),
-        axes: ["x₁ (10 mm)".into(), "x₂ (10 mm)".into(), "x₃".into()],
-        bodies: vec![SketchBody { points, faces }],
-        view: View::towards([0.0, 1.0, 0.0]),
-        marks: vec![mark(Sign::Support), mark(Sign::Arrow)],
-        notes: vec!["E = 7·10^{4} MPa".into()],
-    };
-    sketch.figure().expect("numbers")
-}
-
 fn all() -> Vec<Figure> {
     let maps = [map(ColourScales::Common, false), map(ColourScales::Own, true)];
-    plots().into_iter().chain(maps).chain(lines_and_classes()).chain([bodies()]).collect()
+    plots().into_iter().chain(maps).chain(lines_and_classes()).collect()
 }
 
 #[test]

@@ -1,32 +1,12 @@
 //! Meshes that cannot be drawn are refused with an error that names the place; meshes that are unusual are drawn.
 
-use figures::{
-    ClassPanel, Classes, ColourScales, Figure, FigureError, Map, MapPanel, Sketch, SketchBody, View, box_faces,
-    grid_faces,
-};
+use figures::{ClassPanel, Classes, ColourScales, Figure, FigureError, Map, MapPanel, grid_faces};
 
 type Faces = Vec<Vec<usize>>;
 type Drawn = Result<Figure, FigureError>;
 
-fn corners() -> Vec<[f64; 3]> {
-    (0..8_u8).map(|node| [node >> 2 & 1, node >> 1 & 1, node & 1].map(f64::from)).collect()
-}
-
 fn plane() -> Vec<[f64; 2]> {
     vec![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.0], [2.0, 1.0]]
-}
-
-fn sketch(points: Vec<[f64; 3]>, faces: Faces) -> Drawn {
-    Sketch {
-        name: "s".into(),
-        title: "t".into(),
-        axes: ["x".into(), "y".into(), "z".into()],
-        bodies: vec![SketchBody { points, faces }],
-        view: View::default(),
-        marks: vec![],
-        notes: vec![],
-    }
-    .figure()
 }
 
 fn map(points: Vec<[f64; 2]>, faces: Faces, values: Vec<f64>, contours: bool) -> Drawn {
@@ -57,12 +37,8 @@ fn classes(points: Vec<[f64; 2]>, faces: Faces) -> Drawn {
 }
 
 /// All figures of one mesh, each with the words for its part.
-fn all(faces: &Faces) -> [(&'static str, Drawn); 3] {
-    [
-        ("body 0", sketch(corners(), faces.clone())),
-        ("panel 0", map(plane(), faces.clone(), vec![1.0; 6], true)),
-        ("panel 0", classes(plane(), faces.clone())),
-    ]
+fn all(faces: &Faces) -> [(&'static str, Drawn); 2] {
+    [("panel 0", map(plane(), faces.clone(), vec![1.0; 6], true)), ("panel 0", classes(plane(), faces.clone()))]
 }
 
 #[test]
@@ -88,10 +64,8 @@ fn faces_that_are_no_triangles_and_no_quadrilaterals_are_refused() {
 fn numbers_that_cannot_be_drawn_are_refused_with_their_place() {
     let words = |drawn: Drawn| drawn.expect_err("refused").to_string();
     for number in [f64::NAN, f64::INFINITY, 1e301] {
-        let (mut points, mut flat, mut values) = (corners(), plane(), vec![1.0; 8]);
-        (points[5][1], flat[4][0], values[3]) = (number, number, number);
-        assert!(words(sketch(points, box_faces([2; 3]))).contains("body 0, x₂ of point 5 is"));
-        values.truncate(6);
+        let (mut flat, mut values) = (plane(), vec![1.0; 6]);
+        (flat[4][0], values[3]) = (number, number);
         let map_words = words(map(plane(), grid_faces([3, 2]), values, false));
         assert!(map_words.contains("panel 0, value 3 is"), "{map_words}");
         assert!(words(classes(flat, grid_faces([3, 2]))).contains("panel 0, x"));
@@ -104,8 +78,6 @@ fn counts_that_differ_and_meshes_without_extent_are_refused() {
     assert!(matches!(few, Err(FigureError::Count { expected: 6, found: 5, .. })));
     let flat: Vec<[f64; 2]> = plane().into_iter().map(|[x, _]| [x, 3.0]).collect();
     assert!(matches!(classes(flat, grid_faces([3, 2])), Err(FigureError::Number { index: 1, .. })));
-    // On one spot, and seen from the side.
-    sketch(vec![[1.0; 3]; 8], box_faces([2; 3])).expect("a sketch of a spot");
 }
 
 #[test]

@@ -127,7 +127,10 @@ pub(crate) fn value_at(table: &Table, path: &str) -> Option<Value> {
     let mut here = Value::Table(table.clone());
     for step in steps(path) {
         here = match step {
-            Step::Field(name) => here.get(name)?.clone(),
+            Step::Field(name) => match here.as_array().map(Vec::as_slice) {
+                Some([only]) => only.get(name)?.clone(),
+                _ => here.get(name)?.clone(),
+            },
             Step::Entry(index) => here.get(index)?.clone(),
         };
     }
@@ -157,7 +160,11 @@ fn resolve(path: &str) -> Result<Vec<Node<'static>>, SceneError> {
             Step::Entry(index) => format!("{at}[{index}]"),
         };
         let inner: Vec<Node<'static>> = match step {
-            Step::Field(name) => nodes.iter().flat_map(Node::tables_at).filter_map(|node| node.field(name)).collect(),
+            // The only entry of a list needs no number.
+            Step::Field(name) => {
+                let entries = nodes.iter().map(|node| node.tables().unwrap_or(*node));
+                entries.flat_map(|node| node.tables_at()).filter_map(|node| node.field(name)).collect()
+            }
             Step::Entry(_) => nodes.iter().filter_map(Node::items).collect(),
         };
         if inner.is_empty() {
@@ -190,6 +197,13 @@ fn put(here: &mut Value, steps: &[Step<'_>], value: Option<&Value>, path: &str) 
         return Ok(());
     };
     let inner = match *step {
+        Step::Field(_) if here.is_array() => match here.as_array_mut().map(Vec::as_mut_slice) {
+            Some([only]) => return put(only, steps, value, path),
+            entries => {
+                let found = format!("one of {} entries", entries.map_or(0, |entries| entries.len()));
+                return Err(SceneError::out_of_range(path, found, "the number of the entry, as in body[0].material"));
+            }
+        },
         Step::Field(name) => {
             if !here.is_table() {
                 *here = Value::Table(Table::new());

@@ -153,15 +153,10 @@ fn tables_of_comma_separated_values_have_units_and_no_noise() {
 }
 
 #[test]
-fn the_page_shows_the_counter_surface_the_places_of_heights_and_the_way_to_export() {
+fn the_page_shows_the_places_of_heights_and_the_way_to_export() {
     let scratch = kit::scratch();
     let out = scratch.path().join("run");
     kit::json(HERTZ, &["--mesh", "4", "--max-evaluations", "2", "--json", "--out", text(&out)]);
-    let sketch = read(&out, "figures/sketch.svg");
-    // A sphere of radius 20 mm over a quarter of 10 mm × 10 mm, 20 − √(400 − 200) mm high at the far corner.
-    let note = sketch.split("counter surface: relief ").nth(1).unwrap();
-    let relief: f64 = note.split(' ').next().unwrap().parse().unwrap();
-    assert!((relief - (20.0 - 200.0_f64.sqrt())).abs() < 1e-2, "{relief}");
     let page = read(&out, "report.html");
     assert!(!page.contains("yields first"));
     let heights = page.split("<h2>Control heights").nth(1).unwrap().split("</table>").next().unwrap();

@@ -4,21 +4,21 @@ use crate::commands::failure::Failure;
 use contact::equilibrium::{ContactProblem, ContactRows, Positions, Preview};
 
 /// A load case at a shape: where its nodes are, and what is known without a solve.
-pub struct LookedCase {
+pub struct LookedCase<'a> {
     /// Its name; empty for a scene without cases.
     pub name: String,
-    pub problem: ContactProblem,
+    pub problem: &'a ContactProblem,
     pub positions: Positions,
     pub rows: ContactRows,
     pub preview: Preview,
 }
 
-impl LookedCase {
+impl<'a> LookedCase<'a> {
     /// A case at the shape of some controls.
     ///
     /// # Errors
     /// [`Failure`] for controls without a shape.
-    pub fn new(name: &str, problem: ContactProblem, controls: &[f64]) -> Result<Self, Failure> {
+    pub fn new(name: &str, problem: &'a ContactProblem, controls: &[f64]) -> Result<Self, Failure> {
         let points = problem.positions(controls).map_err(Failure::computation)?;
         let rows = match points == problem.start_positions() {
             true => problem.start_rows().clone(),
@@ -31,7 +31,7 @@ impl LookedCase {
 }
 
 /// What is said of every case: what is the same in all of them once, the rest with the name of its case.
-pub fn by_case(cases: &[LookedCase], of_case: impl Fn(&LookedCase) -> Vec<String>) -> Vec<String> {
+pub fn by_case(cases: &[LookedCase<'_>], of_case: impl Fn(&LookedCase<'_>) -> Vec<String>) -> Vec<String> {
     let all: Vec<Vec<String>> = cases.iter().map(of_case).collect();
     let is_common = |words: &String| all.iter().all(|own| own.contains(words));
     let mut found: Vec<String> = all.iter().take(1).flatten().filter(|words| is_common(words)).cloned().collect();

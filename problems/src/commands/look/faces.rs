@@ -6,6 +6,7 @@ use crate::commands::look::case::{LookedCase, by_case};
 use crate::commands::numbers::{exact, number};
 use crate::commands::report::faces_by_names;
 use crate::commands::scene_words;
+use contact::body::elasticity::Material;
 use contact::body::mesh::bounding_box;
 use contact::scene::{BodyScene, ContactScene, Load, LoadKind, Scene};
 use serde_json::json;
@@ -28,7 +29,7 @@ pub fn loads_on<'s>(body: &'s BodyScene, face: &str) -> impl Iterator<Item = &'s
 }
 
 /// A line for every body and for every face, and the list `bodies` in JSON.
-pub fn face_facts(cases: &[LookedCase]) -> Result<Vec<Fact>, Failure> {
+pub fn face_facts(cases: &[LookedCase<'_>]) -> Result<Vec<Fact>, Failure> {
     let (first, mut facts, mut list) = (&cases[0], Vec::new(), Vec::new());
     for (index, body) in first.problem.bodies.iter().enumerate() {
         let (mesh, places) = (&body.mesh, &first.positions[index]);
@@ -37,7 +38,8 @@ pub fn face_facts(cases: &[LookedCase]) -> Result<Vec<Fact>, Failure> {
         let name = scene_words::body(&body.name);
         let (nodes, cells) = (mesh.node_count(), mesh.cell_count());
         let [x1, x2, x3] = [0, 1, 2].map(side);
-        let words = format!("{nodes} nodes, {cells} cells, x1 = {x1}, x2 = {x2}, x3 = {x3} mm");
+        let of_body = of_volumes(&first.problem.scene.bodies[index]).join("; ");
+        let words = format!("{nodes} nodes, {cells} cells, x1 = {x1}, x2 = {x2}, x3 = {x3} mm; {of_body}");
         facts.push(Fact::new("", &name, words, ""));
         let mut faces = Vec::new();
         // Names may share facets: every one stands with all that it has.
@@ -59,6 +61,20 @@ pub fn face_facts(cases: &[LookedCase]) -> Result<Vec<Fact>, Failure> {
     }
     facts.push(Fact::json("bodies", &list)?);
     Ok(facts)
+}
+
+/// Elastic constants and body forces in words.
+fn of_volumes(body: &BodyScene) -> Vec<String> {
+    let words = |place: &str, material: &Material| {
+        let [modulus, ratio] = [material.young_modulus(), material.poisson_ratio()].map(number);
+        format!("{place}E = {modulus} MPa, ν = {ratio}")
+    };
+    let forces = body.loads.iter().filter_map(|load| {
+        let force = matches!(load.kind, LoadKind::BodyForce(_)).then(|| scene_words::load(load, || 0.0))?;
+        Some(format!("body force {force} in {}", load.place.as_deref().unwrap_or("the whole body")))
+    });
+    let volumes = body.materials.iter().map(|(volume, material)| words(&format!("{volume}: "), material));
+    std::iter::once(words("", &body.material)).chain(volumes).chain(forces).collect()
 }
 
 /// What acts on a face in words.

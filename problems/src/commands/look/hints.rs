@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 const INTO: f64 = 0.2;
 
 /// What is to be looked at in a load case, in sentences.
-pub fn hints(LookedCase { problem, positions, preview, .. }: &LookedCase) -> Vec<String> {
+pub fn hints(LookedCase { problem, positions, preview, .. }: &LookedCase<'_>) -> Vec<String> {
     let mut found = Vec::new();
     let size = positions.iter().map(|nodes| smallest_extent(nodes)).fold(f64::INFINITY, f64::min);
     found.extend(of_gaps(preview, ROUNDING * size));

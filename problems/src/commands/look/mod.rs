@@ -15,42 +15,47 @@ use crate::commands::look::case::{LookedCase, by_case};
 use crate::commands::look::faces::face_facts;
 use crate::commands::look::hints::hints;
 use crate::commands::numbers::number;
-use crate::commands::report::{FIGURES, sketch};
 use crate::commands::scene_words::counted;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::memory;
 use contact::scene::Scene;
 use contact::solvers::Wanted;
-use figures::Figure;
 use figures::page::{Block, File, Page, Section};
 use scene_file::Case;
 use serde_json::json;
 
-const SKETCH: &str = "Triangles stand on faces whose displacements are held, arrows on faces that carry a load; the letters lead to the \
-    list, which names face, direction and size.";
 const SPACE: &str = "What acts on the faces, and the gaps of the nodes that may touch. Drag to turn the bodies; after a click, the wheel \
     zooms. The boxes show and hide faces; click a face for its name, and for number and place of the node.";
 
 /// A scene at a shape, in all load cases.
 struct Look<'a> {
     case: &'a Case,
-    controls: Vec<f64>,
-    cases: Vec<LookedCase>,
+    cases: Vec<LookedCase<'a>>,
+}
+
+/// The problems of all load cases.
+fn problems(case: &Case) -> Result<Vec<ContactProblem>, SceneError> {
+    case.cases.iter().map(|own| ContactProblem::new(own.scene.clone())).collect()
+}
+
+/// What acts on the faces of the bodies, and the gaps before loading, in three dimensions and as lines of a table.
+///
+/// # Errors
+/// [`Failure`] for controls without a shape.
+pub fn setup(cases: &[(&str, &ContactProblem)], controls: &[f64]) -> Result<Vec<Block>, Failure> {
+    let cases = cases.iter().map(|(name, problem)| LookedCase::new(name, problem, controls));
+    let cases = cases.collect::<Result<Vec<_>, _>>()?;
+    let view = Block::Space { view: space::view(&cases)?, caption: SPACE.into() };
+    Ok(std::iter::once(view).chain(Group::new("", face_facts(&cases)?).section().blocks).collect())
 }
 
 impl<'a> Look<'a> {
-    /// The scene of a case; `controls` finds those of the shape, for the problem of the first load case.
-    fn new(
-        case: &'a Case,
-        controls: impl FnOnce(&ContactProblem) -> Result<Vec<f64>, SceneError>,
-    ) -> Result<Self, Failure> {
-        let problems = case.cases.iter().map(|own| ContactProblem::new(own.scene.clone()));
-        let problems = problems.collect::<Result<Vec<_>, _>>()?;
-        let controls = controls(&problems[0])?;
+    /// The scene of a case at the shape of some controls.
+    fn new(case: &'a Case, problems: &'a [ContactProblem], controls: &[f64]) -> Result<Self, Failure> {
         let cases = case.cases.iter().zip(problems);
-        let cases = cases.map(|(own, problem)| LookedCase::new(&own.name, problem, &controls));
-        Ok(Self { case, cases: cases.collect::<Result<_, _>>()?, controls })
+        let cases = cases.map(|(own, problem)| LookedCase::new(&own.name, problem, controls));
+        Ok(Self { case, cases: cases.collect::<Result<_, _>>()? })
     }
 
     fn scene(&self) -> &Scene {
@@ -85,19 +90,13 @@ impl<'a> Look<'a> {
         Ok(Facts { lead, groups })
     }
 
-    fn sketch(&self) -> Result<Figure, Failure> {
-        sketch(&self.cases[0].problem, &self.controls)
-    }
-
     /// The page, without the list of files.
-    fn page(&self, facts: &Facts, figure: Figure, scene: &str) -> Result<Page, Failure> {
+    fn page(&self, facts: &Facts, scene: &str) -> Result<Page, Failure> {
         let view = space::view(&self.cases)?;
         let listing =
             Block::Listing { title: "The scene, complete, with all options put in".into(), text: scene.into() };
-        let mut sections = vec![
-            Section::new("In three dimensions", vec![Block::Space { view, caption: SPACE.into() }]),
-            Section::new("Supports and loads", vec![Block::Picture { figure, caption: SKETCH.into() }]),
-        ];
+        let mut sections =
+            vec![Section::new("In three dimensions", vec![Block::Space { view, caption: SPACE.into() }])];
         sections.extend(facts.groups.iter().rev().map(Group::section));
         sections.push(Section::new("Scene", vec![listing]));
         sections.retain(|section| !section.blocks.is_empty());
@@ -109,8 +108,9 @@ impl<'a> Look<'a> {
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (case, arguments) = (&loaded.case, session.arguments);
     let file = ("--controls", arguments.shape.controls.as_deref());
-    let controls = |problem: &ContactProblem| Ok(controls::load(problem, case, file)?.as_slice().to_vec());
-    let look = Look::new(case, controls)?;
+    let problems = problems(case)?;
+    let controls = controls::load(&problems[0], case, file)?;
+    let look = Look::new(case, &problems, controls.as_slice())?;
     let facts = look.facts()?;
     let object = json(&facts)?;
     let folder = Folder::of_command(&loaded.case, arguments)?;
@@ -120,15 +120,10 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     }
     printed_with_files(arguments.printed(text, object.clone()), arguments.json, folder.as_ref(), |folder| {
         folder.write("look.json", &object)?;
-        let sketch = look.sketch()?;
-        folder.within(FIGURES)?.draw(&sketch)?;
-        let mut page = look.page(&facts, sketch, &loaded.file.print()?)?;
-        let file = |path: &str, what: &str| File { path: path.into(), what: what.into() };
-        let files = vec![
-            file("look.json", "everything that look knows, as one JSON object"),
-            file(&format!("{FIGURES}/sketch.svg"), "bodies, supports and loads"),
-        ];
-        page.sections.push(Section::new("Files", vec![Block::Files(files)]));
+        let mut page = look.page(&facts, &loaded.file.print()?)?;
+        let what = "everything that look knows, as one JSON object";
+        let files = Block::Files(vec![File { path: "look.json".into(), what: what.into() }]);
+        page.sections.push(Section::new("Files", vec![files]));
         folder.write("report.html", page.html())
     })
 }
@@ -138,6 +133,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
 /// # Errors
 /// [`Failure::Input`] for a scene that cannot be computed.
 pub fn page(case: &Case, scene: &str) -> Result<String, Failure> {
-    let look = Look::new(case, |_| Ok(case.start_controls()))?;
-    Ok(look.page(&look.facts()?, look.sketch()?, scene)?.html())
+    let problems = problems(case)?;
+    let look = Look::new(case, &problems, &case.start_controls())?;
+    Ok(look.page(&look.facts()?, scene)?.html())
 }

@@ -23,10 +23,10 @@ struct Part {
 }
 
 /// Named faces of all bodies and obstacles, in all load cases.
-pub fn view(cases: &[LookedCase]) -> Result<SpaceView, Failure> {
+pub fn view(cases: &[LookedCase<'_>]) -> Result<SpaceView, Failure> {
     let surfaces = ContactSurface::all(&cases[0].problem);
     let parts = parts(&cases[0], &surfaces);
-    let state = |(number, case): (usize, &LookedCase)| SpaceState {
+    let state = |(number, case): (usize, &LookedCase<'_>)| SpaceState {
         shape: 0,
         case: number,
         displacements: parts.iter().map(|part| vec![[0.0; 3]; part.numbers.len()]).collect(),
@@ -65,7 +65,7 @@ pub fn view(cases: &[LookedCase]) -> Result<SpaceView, Failure> {
 }
 
 /// The parts of the first load case.
-fn parts(LookedCase { problem, positions, rows, .. }: &LookedCase, surfaces: &[ContactSurface]) -> Vec<Part> {
+fn parts(LookedCase { problem, positions, rows, .. }: &LookedCase<'_>, surfaces: &[ContactSurface]) -> Vec<Part> {
     let side = |axis: usize| {
         let extents = positions.iter().map(|nodes| extent(nodes.iter().copied(), axis));
         extents.map(|[least, most]| most - least).fold(0.0, f64::max)
@@ -133,7 +133,7 @@ fn class(scene: &Scene, part: &Part) -> f64 {
 }
 
 /// Gaps at the contact nodes of a part; NaN elsewhere.
-fn gaps(LookedCase { problem, rows, .. }: &LookedCase, part: &Part) -> Vec<f64> {
+fn gaps(LookedCase { problem, rows, .. }: &LookedCase<'_>, part: &Part) -> Vec<f64> {
     let mut found = vec![f64::NAN; part.numbers.len()];
     let Some((body, names)) = &part.face else { return found };
     let points = problem.boundary.contact_points().iter().zip(&rows.nodes);

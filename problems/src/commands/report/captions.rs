@@ -1,8 +1,5 @@
 //! What is to be seen in the figures of a report, in sentences.
 
-pub const SKETCH: &str = "The bodies at the first shape with their cells. Triangles stand on faces whose displacements are held, arrows \
-    on faces that carry a load; the letters lead to the list, which names face, direction and size.";
-
 pub const PRESSURE: &str = "Contact pressure over the plan of the contact surface; a ring marks the peak. On one scale, equal colours are \
     equal pressures. On scales of their own, small differences can be seen.";
 

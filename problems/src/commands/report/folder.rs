@@ -4,6 +4,7 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
+use crate::commands::look::setup;
 use crate::commands::register::{JOURNAL, REGISTER};
 use crate::commands::report::bodies::Relief;
 use crate::commands::report::contact_surface::ContactSurface;
@@ -11,7 +12,7 @@ use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::key_numbers::{self, key_numbers};
 use crate::commands::report::space::space;
 use crate::commands::report::stamp::stamp;
-use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
+use crate::commands::report::{bodies, captions, gallery, sections, tables};
 use crate::commands::run_kind::RUN;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape, objective_note};
 use crate::vtk_files::{FieldState, vtk_files};
@@ -43,6 +44,8 @@ pub struct Parts {
     pub numbers: Section,
     /// The shapes in three dimensions.
     pub space: Section,
+    /// What holds and loads the bodies, at the first shape.
+    pub setup: Section,
     /// The pictures with their captions.
     pub pictures: Vec<Block>,
 }
@@ -101,6 +104,11 @@ impl<'a> ReportFolder<'a> {
                 let block = Block::Space { view, caption: captions::SPACE.into() };
                 self.parts.space = Section::new("In three dimensions", vec![block]);
             }
+            let all = self.objective.cases();
+            let problems = (0..all.count()).map(|case| (all.name(case), all.case(case).problem())).collect::<Vec<_>>();
+            let first = solved.first().map(|(.., shape)| shape.controls.as_slice());
+            let blocks = first.map(|controls| setup(&problems, controls)).transpose()?;
+            self.parts.setup = Section::new("Supports and loads", blocks.unwrap_or_default());
         }
         for shape in &shapes {
             let what = "pressure, traction, remaining gap and status of every contact node";
@@ -116,10 +124,6 @@ impl<'a> ReportFolder<'a> {
     /// The figures of some shapes.
     fn draw_shapes(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
         let objective = self.objective;
-        if let Some(first) = shapes.first() {
-            let sketch = setup::sketch(objective.solver().problem(), first.solved.controls.as_slice())?;
-            self.draw(sketch, "bodies, supports and loads", captions::SKETCH)?;
-        }
         let surfaces = ContactSurface::all(objective.solver().problem());
         surfaces.iter().try_for_each(|surface| self.draw_pressure(surface, shapes))?;
         let friction = objective.solver().problem().boundary.has_friction();

@@ -9,7 +9,6 @@ mod gallery;
 mod key_numbers;
 mod pages;
 mod sections;
-mod setup;
 mod skin;
 mod solved_page;
 mod space;
@@ -19,8 +18,7 @@ mod tables;
 
 pub use bodies::{MAX_LIFT as LIFT, Relief, apart};
 pub use contact_surface::ContactSurface;
-pub use folder::{FIGURES, VTK};
+pub use folder::VTK;
 pub use sections::{export_command, found_label};
-pub use setup::sketch;
 pub use skin::{Skin, extent, faces_by_names};
 pub use solved_page::solved_page;

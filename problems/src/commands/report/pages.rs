@@ -28,7 +28,7 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
         (true, false) => format!("no better shape was found, {proved}"),
     };
     let limits = limits(&shapes.each_ref(), Some(&ended.last.report));
-    let mut sections = vec![limits, parts.numbers, parts.space, pictures(parts.pictures)];
+    let mut sections = vec![limits, parts.numbers, parts.space, parts.setup, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     let command =
         Block::Listing { title: "The command that writes STL, STEP and CSV".into(), text: export_command(folder) };
@@ -39,7 +39,7 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
 
 /// The report of an evaluation.
 pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape, facts: &Facts) -> Page {
-    let mut sections = vec![limits(&[shape], None), parts.numbers, parts.space, pictures(parts.pictures)];
+    let mut sections = vec![limits(&[shape], None), parts.numbers, parts.space, parts.setup, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     sections.extend(controls(objective, shape.controls.as_slice()));
     sections.push(seconds(shape));
@@ -63,7 +63,8 @@ pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> P
         facts: shape_facts::states(objective, &shapes, ["", ""]),
         words: String::new(),
     };
-    let sections = vec![table, parts.numbers, parts.space, pictures(parts.pictures), with_friction.section()];
+    let sections =
+        vec![table, parts.numbers, parts.space, parts.setup, pictures(parts.pictures), with_friction.section()];
     page(objective, "with and without friction", lead, sections)
 }
 
