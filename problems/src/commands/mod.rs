@@ -4,8 +4,8 @@
 //! [options]`, for
 //! `contact3d` with a scene file before the command. Exit status: 0 success; 1 the computation failed, its result could
 //! not be printed or written, or a certificate does not agree; 2 bad input; 130 interrupted, with a report. `--json`
-//! prints one JSON object on stdout and nothing else there. `NAME completions SHELL` and `NAME man` print files for
-//! shells and for `man`.
+//! prints one JSON object on stdout and nothing else there. `NAME completions SHELL` prints a file
+//! for a shell.
 
 mod arguments;
 mod ascii;

@@ -19,7 +19,7 @@ fn nodes_of_the_contact_face_move_where_supports_hold_others() {
 /// The lug moved up by 0.1 mm as a whole: its files agree with each other, with the nose, a cylinder, and with the top.
 /// `hold`: whether supports, which hold the wall along x1 and x2, hold nodes in the shape too.
 fn raised(hold: &str) {
-    let hold = format!("lattice.hold_supports={hold}");
+    let hold = format!("body.lattice.hold_supports={hold}");
     let scene = format!("{}/scenes/lug_tet10.toml", env!("CARGO_MANIFEST_DIR"));
     let folder = kit::scratch();
     let count =

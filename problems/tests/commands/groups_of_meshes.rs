@@ -88,8 +88,8 @@ fn export_refuses_inverted_cells() {
         (0..81).map(|control| if control % 3 == 2 { [8.5, -8.5][control % 2] } else { 0.0 }).collect();
     let file = folder.path().join("controls.json");
     std::fs::write(&file, serde_json::to_string(&controls).unwrap()).unwrap();
-    let box_of = r#"lattice.box=[[-20.0, 0.0, 0.0], [20.0, 30.0, 2.0]]"#;
-    let bounds = "lattice.displacement=[-9.0, 9.0]";
+    let box_of = r#"body.lattice.box=[[-20.0, 0.0, 0.0], [20.0, 30.0, 2.0]]"#;
+    let bounds = "body.lattice.displacement=[-9.0, 9.0]";
     let common = ["--controls", &*file.display().to_string(), "--set", box_of, "--set", bounds].map(str::to_owned);
     let out = folder.path().join("out").display().to_string();
     let [evaluated, exported] = [vec!["evaluate"], vec!["export", "--out", &out]].map(|command| {

@@ -1,4 +1,4 @@
-//! What the binaries say to people: help, completions, the manual page; terminals without UTF-8 or colours.
+//! What the binaries say to people: help, completions; terminals without UTF-8 or colours.
 
 use testset::kit::{self, command, errors, refused};
 
@@ -38,16 +38,10 @@ fn the_help_fits_the_terminal() {
 }
 
 #[test]
-fn shells_and_man_get_their_files() {
+fn shells_get_their_completions() {
     for (shell, words) in [("bash", "complete -F"), ("zsh", "#compdef hertz3d"), ("fish", "complete -c hertz3d")] {
         let script = printed(HERTZ, &["completions", shell]);
         assert!(script.contains(words) && script.contains("max-evaluations"), "{shell}: {script}");
-    }
-    for program in [CONTACT, HERTZ] {
-        let page = printed(program, &["man"]);
-        for words in [".TH ", "\\-\\-friction", "Examples:", "evaluate"] {
-            assert!(page.contains(words), "{words}: {page}");
-        }
     }
     refused(HERTZ, &["completions", "cmd"], &["name of a shell", "bash", "zsh"]);
     refused(CONTACT, &["completions"], &["name of a shell"]);
