@@ -117,18 +117,16 @@ fn compare(scene: &Scene, needed: f64, available: Option<f64>) -> Result<(), Sce
                 .map(nodes)
                 .enumerate()
                 .fold((0, 0.0), |largest, other| if other.1 > largest.1 { other } else { largest });
-            let body = &scene.bodies[largest.0];
+            let (at, body) = (format!("body[{}]", largest.0), &scene.bodies[largest.0]);
             let (field, what) = match &body.geometry {
                 Geometry::Block(block) => {
                     let (bricks, subdomains) = (joined(block.bricks), joined(block.subdomains));
-                    let field =
-                        if scene.is_of_blocks() { "mesh.bricks".to_owned() } else { format!("{}.bricks", body.name) };
-                    (field, format!("{bricks} bricks with {subdomains} subdomains"))
+                    (format!("{at}.block.bricks"), format!("{bricks} bricks with {subdomains} subdomains"))
                 }
                 Geometry::Mesh(geometry) => {
                     let (nodes, cells) = (geometry.mesh.node_count(), geometry.mesh.cell_count());
                     let pieces = geometry.piece_count();
-                    (format!("{}.mesh", body.name), format!("{nodes} nodes and {cells} cells in about {pieces} pieces"))
+                    (format!("{at}.mesh"), format!("{nodes} nodes and {cells} cells in about {pieces} pieces"))
                 }
             };
             let allowed = format!("what fits into the {:.1} GB of memory available", available / 1e9);

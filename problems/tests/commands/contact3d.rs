@@ -65,7 +65,7 @@ fn what_is_no_scene_is_refused_with_the_file_and_the_field() {
         (
             "radius = 20.0",
             "radius = 2.0",
-            ["bad.toml: counter_surface at (0, 4) = NaN", "finite heights over the whole base"],
+            ["bad.toml: what lies opposite to top of lower at (0, 4) = NaN", "finite heights over the whole base"],
         ),
         ("height = 10.0", "height = 10.5", ["admissible", "10.5"]),
         ("volume = [800.0, 1200.0]", "volume = [1200.0, 800.0]", ["1200", "800"]),

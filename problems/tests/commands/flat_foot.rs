@@ -58,7 +58,7 @@ fn an_even_load_is_spread_by_the_integral_and_not_by_the_sum_over_nodes() {
 #[test]
 fn heights_and_offsets_do_not_matter_to_a_foot() {
     let raised = [("height = 20\n", "height = 30.1\n"), ("19.5", "29.6"), ("[90000, 96000]", "[135000, 147000]")];
-    let far = [("form = \"plane\"\nheight = 20\n\n[surface", "form = \"plane\"\nheight = 1000\n\n[surface")];
+    let far = [("form = \"plane\"\nheight = 20\n\n[objective", "form = \"plane\"\nheight = 1000\n\n[objective")];
     for (changes, warnings) in [(&raised[..], vec![]), (&far[..], vec!["large-displacement"])] {
         let result = changed("foot", changes, &["--mesh", "6"]);
         let [start, end] = ["objective_start", "objective"].map(|key| result[key].as_f64().unwrap());
@@ -93,7 +93,7 @@ fn a_uniform_pressure_has_the_least_integral_on_every_mesh() {
 /// All nodes of one brick lie on an edge.
 #[test]
 fn a_uniform_pressure_on_one_brick_has_no_peak_at_an_edge() {
-    let held = "face = \"x1-min\"\nheld = [\"u1\"]\n[[body.supports]]\nface = \"x2-min\"\nheld = [\"u2\"]";
+    let held = "face = \"x1-min\"\nheld = [\"u1\"]\n\n[[body.supports]]\nface = \"x2-min\"\nheld = [\"u2\"]";
     let changes =
         [(held, "face = \"bottom\"\nheld = [\"u1\", \"u2\"]"), ("poisson_ratio = 0.3", "poisson_ratio = 0.0")];
     let result = changed("uniform", &changes, &["evaluate", "--mesh", "1"]);

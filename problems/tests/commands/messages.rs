@@ -55,6 +55,8 @@ fn any_field_can_be_set() {
         "--set",
         "body[0].block.bricks=4x4x2",
         "--set",
+        "body[1].block.bricks=4x4x2",
+        "--set",
         "solver.kind=direct",
     ];
     let set = kit::json(HERTZ, &[&["evaluate", "--json"], &fields[..]].concat());

@@ -45,9 +45,9 @@ fn fields_that_mean_nothing_on_the_mesh_are_refused() {
 
 #[test]
 fn options_of_blocks_are_refused_for_a_mesh() {
-    for (option, field) in [("--mesh", "body[0].block.bricks"), ("--subdomains", "body[0].block.subdomains")] {
+    for option in ["--mesh", "--subdomains"] {
         let (refused, message) = said("friction = 0.3", "friction = 0.3", &[option, "4"]);
-        assert!(refused && message.contains(field) && message.contains("a block of bricks"), "{message}");
+        assert!(refused && message.contains(option) && message.contains("a block of bricks"), "{message}");
     }
 }
 

@@ -118,7 +118,7 @@ impl ContactProblem {
             let valid = nodes.is_empty() || area > SMALLEST_AREA * extent * extent;
             SceneError::require(valid, format!("{field}.area"), "projected", allowed)?;
             let allowed = "a face with nodes that supports do not hold along their normals";
-            SceneError::require(!nodes.is_empty(), format!("{field}.face"), &contact.slave.face, allowed)?;
+            SceneError::require(!nodes.is_empty(), format!("{field}.slave.face"), &contact.slave.face, allowed)?;
         }
         Ok(())
     }
@@ -353,8 +353,7 @@ fn bodies(scene: &Scene) -> Result<Vec<Body>, SceneError> {
         for (index, own) in scene.contacts.iter().enumerate() {
             let faces = std::iter::once(("slave", &own.slave)).chain(own.master_face().map(|face| ("master", face)));
             for (side, face) in faces.filter(|(_, face)| face.body == number) {
-                let part = if own.master_face().is_some() { side } else { "face" };
-                let field = format!("{}.{part}", scene.contact_field(index));
+                let field = format!("{}.{side}.face", scene.contact_field(index));
                 contact.extend(find_face(&field, &face.face, &mesh)?);
             }
         }

@@ -153,7 +153,7 @@ fn refused(change: impl FnOnce(&mut Scene)) -> String {
 #[test]
 fn what_is_no_contact_is_refused_with_the_reason() {
     let itself = refused(|scene| scene.contacts[0].master = Master::Body(BodyFace::new(0, "x1-max")));
-    assert!(itself.contains("contact.master.body") && itself.contains("another body"), "{itself}");
+    assert!(itself.contains("contact[0].master.body") && itself.contains("another body"), "{itself}");
     let apart = refused(|scene| {
         scene.bodies[1] = scene.bodies[1].clone().moved([40.0, 0.0, 0.0]).unwrap();
     });
@@ -167,9 +167,9 @@ fn what_is_no_contact_is_refused_with_the_reason() {
         scene.contacts[0].kind = contact::scene::ContactKind::Tied;
         scene.contacts[0].friction = 0.2;
     });
-    assert!(glued.contains("contact.tied"), "{glued}");
+    assert!(glued.contains("contact[0].tied"), "{glued}");
     let named = refused(|scene| scene.contacts[0].master = Master::Body(BodyFace::new(1, "botom")));
-    assert!(named.contains("contact.master") && named.contains("bottom"), "{named}");
+    assert!(named.contains("contact[0].master") && named.contains("bottom"), "{named}");
     let alone = refused(|scene| {
         let mut third = scene.bodies[1].clone();
         third.name = "third".into();

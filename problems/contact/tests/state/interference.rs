@@ -68,5 +68,5 @@ fn states_with_interference_have_the_derivatives_of_differences() {
 #[test]
 fn interference_that_is_no_number_is_refused() {
     let error = ContactProblem::new(pressed(signorini().unwrap(), f64::INFINITY)).unwrap_err().to_string();
-    assert!(error.starts_with("contact.interference = inf"), "{error}");
+    assert!(error.starts_with("contact[0].interference = inf"), "{error}");
 }

@@ -60,10 +60,10 @@ pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
     }
     let allowed =
         format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
-    if most <= MOST_UNKNOWNS {
-        Ok(())
-    } else {
-        Err(SceneError::out_of_range("body", scene_words::mesh(scene), allowed))
+    match scene.bodies[0].block() {
+        _ if most <= MOST_UNKNOWNS => Ok(()),
+        Some(block) => Err(SceneError::out_of_range("body[0].block.bricks", format!("{:?}", block.bricks), allowed)),
+        None => Err(SceneError::out_of_range("body[0].mesh", scene_words::mesh(scene), allowed)),
     }
 }
 

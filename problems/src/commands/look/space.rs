@@ -24,7 +24,7 @@ struct Part {
 
 /// Named faces of all bodies and obstacles, in all load cases.
 pub fn view(cases: &[LookedCase<'_>]) -> Result<SpaceView, Failure> {
-    let surfaces = ContactSurface::all(&cases[0].problem);
+    let surfaces = ContactSurface::all(cases[0].problem);
     let parts = parts(&cases[0], &surfaces);
     let state = |(number, case): (usize, &LookedCase<'_>)| SpaceState {
         shape: 0,

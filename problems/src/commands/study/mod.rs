@@ -98,7 +98,7 @@ fn started(
     let optimizer = &loaded.case.optimizer;
     if plan.optimize
         && !optimizer.continuation.is_empty()
-        && plan.vary.iter().any(|varied| varied.field() == "mesh.bricks")
+        && plan.vary.iter().any(|varied| varied.field() == "body[0].block.bricks")
     {
         folder.iter().for_each(RunFolder::abandon);
         return Err(Failure::Input("--vary mesh is allowed without --continuation, which names the meshes".into()));
