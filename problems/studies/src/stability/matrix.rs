@@ -1,7 +1,7 @@
 //! The whole matrix of cases.
 
 use crate::stability::case::Case;
-use crate::stability::{contacts, friction, geometry, loads, locking, materials, optimizer, tearing, units};
+use crate::stability::{contacts, friction, geometry, loads, locking, materials, tearing, units};
 
 /// All cases, in the order of the page.
 pub fn all() -> Vec<Case> {
@@ -15,7 +15,6 @@ pub fn all() -> Vec<Case> {
         contacts::kinks(),
         units::cases(),
         tearing::cases(),
-        optimizer::cases(),
     ];
     groups.into_iter().flatten().collect()
 }

@@ -2,8 +2,7 @@
 //!
 //! ```text
 //! cli ─ matrix of cases ─┬─ checked_run ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
-//!                        ├─ units, locking: scenes and fields compared with each other → Record
-//!                        └─ optimizer: bundle method on hostile oracles → Record
+//!                        └─ units, locking: scenes and fields compared with each other → Record
 //!     └ optimizer_page ─┬─ optimizer_terminations: terminations on the collection, compared with known minima
 //!                       └─ mixed_units: the same on convex problems in mixed units; cone programs give the minima
 //! Records ─ table (Markdown) or JSON
@@ -25,12 +24,10 @@ mod locking;
 mod materials;
 mod matrix;
 mod mixed_units;
-mod optimizer;
 mod optimizer_page;
 mod optimizer_stationarity;
 mod optimizer_terminations;
 mod optimizer_variants;
-mod oracle;
 mod random;
 mod record;
 mod scenes;

@@ -57,8 +57,6 @@ pub struct Record {
     pub contraction: Option<f64>,
     /// Condition number of Newton's matrix on the contact displacements.
     pub condition: Option<f64>,
-    /// Evaluations of the optimizer.
-    pub evaluations: Option<usize>,
     /// Seconds of the case, all paths.
     pub seconds: f64,
 }

@@ -38,11 +38,10 @@ pub fn markdown(report: &StabilityReport) -> String {
 fn line(record: &Record) -> Vec<String> {
     let number = |value| or_dash(value, |value: f64| format!("{value:.1e}"));
     let work: Vec<String> = record.paths.iter().take(2).map(work).collect();
-    let evaluations = || or_dash(record.evaluations, |count| format!("{count} evaluations"));
     vec![
         escaped(&record.name),
         outcome_name(record.outcome).into(),
-        if work.is_empty() { evaluations() } else { work.join("; ") },
+        if work.is_empty() { "–".into() } else { work.join("; ") },
         number(record.largest_residual()),
         number(record.force_difference),
         number(record.subgradient_difference),

@@ -33,8 +33,8 @@ fn outcomes(groups: &[&str]) -> [usize; 4] {
 
 /// The whole matrix runs in the test `long`.
 #[test]
-fn supports_kinks_units_and_hostile_oracles_are_as_expected() {
-    assert_eq!(outcomes(&["supports", "kinks", "units", "optimizer"]), [35, 5, 0, 0]);
+fn supports_kinks_and_units_are_as_expected() {
+    assert_eq!(outcomes(&["supports", "kinks", "units"]), [11, 3, 0, 0]);
 }
 
 /// Every 97th run; all of them are in the test `long`.
