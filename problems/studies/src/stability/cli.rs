@@ -1,6 +1,6 @@
 //! The command line of the study.
 
-use crate::stability::optimizer_page::{self, Listed, Part};
+use crate::stability::optimizer::{self, Part};
 use crate::stability::record::{CaseOutcome, Record, StabilityReport};
 use crate::stability::{matrix, random, table};
 use clap::Parser;
@@ -15,7 +15,7 @@ pub struct StabilityArguments {
     /// The fast subset only.
     #[arg(long)]
     pub quick: bool,
-    /// Only cases whose group or name contains this text; with `--optimizer units`, only runs whose name does.
+    /// Only cases whose group or name contains this text; with `--optimizer`, only runs whose name does, and each with its end.
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
     /// Random scenes instead of the cases: so many of them.
@@ -28,11 +28,8 @@ pub struct StabilityArguments {
     #[arg(long, value_name = "DIR", requires = "random")]
     pub out: Option<PathBuf>,
     /// What the optimizer says at the end of its runs, held against what is true; minutes.
-    #[arg(long, value_name = "PART", num_args = 0..=1, default_missing_value = "all", conflicts_with = "quick")]
+    #[arg(long, value_name = "PART", conflicts_with = "quick")]
     pub optimizer: Option<Part>,
-    /// With `--optimizer units`: the runs one by one, each with its name, value, minimum and end.
-    #[arg(long, value_name = "RUNS", requires = "optimizer")]
-    pub list: Option<Listed>,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -46,7 +43,7 @@ pub fn run() -> ExitCode {
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
 fn execute(arguments: &StabilityArguments) -> Result<String, Failure> {
     if let Some(part) = arguments.optimizer {
-        return optimizer_page::page(part, arguments.only.as_deref(), arguments.list, arguments.json);
+        return optimizer::page(part, arguments.only.as_deref(), arguments.json);
     }
     if let Some(count) = arguments.random {
         return at_random(arguments, count as usize);

@@ -3,8 +3,7 @@
 //! ```text
 //! cli ─ matrix of cases ─┬─ checked_run ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
 //!                        └─ units, locking: scenes and fields compared with each other → Record
-//!     └ optimizer_page ─┬─ optimizer_terminations: terminations on the collection, compared with known minima
-//!                       └─ mixed_units: the same on convex problems in mixed units; cone programs give the minima
+//!     └ optimizer: what the bundle method says at the end of its runs, compared with known minima
 //! Records ─ table (Markdown) or JSON
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a
@@ -23,11 +22,7 @@ mod loads;
 mod locking;
 mod materials;
 mod matrix;
-mod mixed_units;
-mod optimizer_page;
-mod optimizer_stationarity;
-mod optimizer_terminations;
-mod optimizer_variants;
+mod optimizer;
 mod random;
 mod record;
 mod scenes;
@@ -39,7 +34,6 @@ pub use case::Case;
 pub use cli::run;
 pub use locking::field_error;
 pub use matrix::all;
-pub use mixed_units::{UnitReport, mixed_units};
-pub use optimizer_terminations::{TerminationKind, terminations};
+pub use optimizer::{Run, collection, mixed_units, offenders};
 pub use random::run as random_scenes;
 pub use record::{CaseOutcome, Counts, StabilityReport};
