@@ -34,7 +34,7 @@ pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> 
 /// # Errors
 /// [`Failure`] from the scene or the preparation of the solver.
 pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
-    let solver = variant.solver(&Arc::new(ContactProblem::new(scene)?)).map_err(Failure::computation)?;
+    let solver = variant.solver(&Arc::new(ContactProblem::new(scene)?), 1).map_err(Failure::computation)?;
     Ok(ContactObjective::new(ContactShape::by(solver), Measure::Pressure(measure), &[])?)
 }
 

@@ -2,21 +2,19 @@
 
 use crate::scaling::cases::{Case, SceneName, Variant, cluster_count};
 use crate::scaling::memory;
-use crate::scaling::rows::{Adjoint, Sample, ScalingRow, Solve, Start};
 use contact::contact_shape::{ContactState, ContactWarmStart, Solver};
-use contact::equilibrium::ContactProblem;
+use contact::equilibrium::{ContactProblem, StageSeconds, Work};
 use contact::error::ContactError;
 use nonsmooth::verify::seeded_direction;
 use problems::commands::Failure;
+use serde::Serialize;
 use std::sync::Arc;
 use std::time::Instant;
 
 /// Tolerance of the timed states and of all subgradients.
 pub const TIMED: f64 = 1e-8;
-/// Tolerances of the states that are only counted, cold.
+/// Tolerances of the states that are only counted: cold ones, and of the last one a warm one.
 pub const COLD: [f64; 2] = [1e-6, 1e-10];
-/// Tolerances of the warm states that are only counted.
-const WARM: [f64; 1] = [1e-10];
 /// Repetitions of what takes less than [`LONG_RUN`].
 const REPETITIONS: usize = 3;
 /// Seconds from which one repetition is enough.
@@ -27,6 +25,103 @@ const EXPONENT: i32 = 4;
 const SEED: u64 = 20_231;
 /// Largest change of a control, relative to the height of the body: 0.1 mm for the 100 mm of Example 5.1.
 const CHANGE: f64 = 1e-3;
+
+/// Where a solve starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Without a warm start.
+    Cold,
+    /// From the state of slightly different controls.
+    Warm,
+}
+
+/// Work and time of a state.
+#[derive(Debug, Serialize)]
+pub struct Solve {
+    start: Start,
+    /// Relative Newton residual asked for.
+    tolerance: f64,
+    /// Steps and products with the dual operator.
+    pub work: Work,
+    /// The objective Σσ⁴, MPa⁴.
+    objective: f64,
+    /// Wall-clock time, s.
+    seconds: f64,
+    /// Stages of these; none for direct condensation.
+    pub stages: Option<StageSeconds>,
+}
+
+/// Work and time of a subgradient.
+#[derive(Debug, Serialize)]
+pub struct Adjoint {
+    /// Products with the dual operator; 0 for direct condensation.
+    pub applications: usize,
+    /// Wall-clock seconds of the adjoint system (direct: with the element sums).
+    pub seconds: f64,
+    /// Wall-clock seconds of the element sums.
+    shape_seconds: f64,
+}
+
+/// A state and its subgradient, both timed.
+#[derive(Debug, Serialize)]
+pub struct Sample {
+    pub state: Solve,
+    pub adjoint: Adjoint,
+}
+
+/// One case with one solver: keys of the JSON output.
+#[derive(Debug, Serialize)]
+pub struct ScalingRow {
+    scene: SceneName,
+    /// Bricks and subdomains per edge.
+    #[serde(flatten)]
+    pub case: Case,
+    pub variant: Variant,
+    /// Subdomains per edge of a cluster.
+    pub clusters: usize,
+    /// Rigid amplitudes of the clusters; none for direct condensation.
+    pub coarse_unknowns: Option<usize>,
+    /// Torn degrees of freedom; untorn ones for direct condensation.
+    pub dofs: usize,
+    /// Rows of B; contact rows for direct condensation.
+    pub multipliers: usize,
+    pub contact_nodes: usize,
+    /// Seconds of what is done once per run: patterns, symbolic analysis, rows.
+    pub setup_seconds: f64,
+    /// State to 1e-8 and subgradient to 1e-8 from nothing: the repetition of median time.
+    pub cold: Sample,
+    /// State and subgradient to 1e-8 after a small change of the controls, started from the old multipliers.
+    pub warm: Option<Sample>,
+    /// States to other tolerances.
+    others: Vec<Solve>,
+    /// Peak resident memory of the process in this case, GiB; none where the system does not tell.
+    pub peak_memory: Option<f64>,
+    /// Messages about solves that did not reach their tolerance.
+    pub failures: Vec<String>,
+}
+
+impl Solve {
+    /// Products with the dual operator; 0 for direct condensation.
+    pub fn applications(&self) -> usize {
+        self.work.dual_operator_applications
+    }
+}
+
+impl Sample {
+    /// Seconds of state and subgradient.
+    pub fn seconds(&self) -> f64 {
+        self.state.seconds + self.adjoint.seconds + self.adjoint.shape_seconds
+    }
+}
+
+impl ScalingRow {
+    /// The state solved from `start` to `tolerance`.
+    pub fn solve(&self, start: Start, tolerance: f64) -> Option<&Solve> {
+        let timed = std::iter::once(&self.cold).chain(&self.warm).map(|sample| &sample.state);
+        timed.chain(&self.others).find(|solve| solve.start == start && solve.tolerance == tolerance)
+    }
+}
 
 /// Measures a case; warm states have controls that differ a little from those of the cold ones.
 ///
@@ -40,14 +135,14 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
     let nearby: Vec<f64> =
         controls.iter().zip(&change).map(|(height, entry)| height + CHANGE * height * entry).collect();
     let clock = Instant::now();
-    let mut solver = variant.clustered_solver(&problem, clusters).map_err(failure)?;
+    let mut solver = variant.solver(&problem, clusters).map_err(failure)?;
     let setup_seconds = clock.elapsed().as_secs_f64();
     let [dofs, multipliers] = solver.sizes();
     let mut restart = None;
     let cold = median(|| {
         if restart.is_some() {
             // A solver keeps the factors of bodies whose shape has not changed; a cold state must not have them.
-            solver = variant.clustered_solver(&problem, clusters)?;
+            solver = variant.solver(&problem, clusters)?;
         }
         let (sample, state) = sample(&solver, &controls, None)?;
         restart = Some(state.solution.warm_start());
@@ -104,7 +199,7 @@ fn sample(
     start: Option<&ContactWarmStart>,
 ) -> Result<(Sample, ContactState), ContactError> {
     let (found, state) = solve(solver, controls, start, TIMED)?;
-    let adjoint = adjoint(solver, &found, TIMED)?;
+    let adjoint = adjoint(solver, &found)?;
     Ok((Sample { state, adjoint }, found))
 }
 
@@ -121,7 +216,7 @@ fn counted(solver: &Solver, [controls, nearby]: [&[f64]; 2], failures: &mut Vec<
     };
     for tolerance in COLD {
         let restart = record(controls, None, tolerance);
-        if let Some(restart) = restart.filter(|_| WARM.contains(&tolerance)) {
+        if let Some(restart) = restart.filter(|_| tolerance == COLD[1]) {
             record(nearby, Some(&restart), tolerance);
         }
     }
@@ -140,7 +235,6 @@ fn solve(
     let solve = Solve {
         start: if start.is_some() { Start::Warm } else { Start::Cold },
         tolerance,
-        residual: state.forces.residuals.newton,
         work: state.work(),
         objective: pressures(&state).map(|(pressure, _)| pressure.powi(EXPONENT)).sum(),
         seconds: clock.elapsed().as_secs_f64(),
@@ -150,15 +244,15 @@ fn solve(
 }
 
 /// Sensitivities of the column heights of Σσ⁴, timed.
-fn adjoint(solver: &Solver, state: &ContactState, tolerance: f64) -> Result<Adjoint, ContactError> {
+fn adjoint(solver: &Solver, state: &ContactState) -> Result<Adjoint, ContactError> {
     let boundary = &solver.problem().boundary;
     let mut dual = vec![0.0; boundary.row_count];
     for (point, (pressure, area)) in boundary.points.iter().zip(pressures(state)) {
         dual[point.start] = f64::from(EXPONENT) * pressure.powi(EXPONENT - 1) / area;
     }
-    let result = solver.sensitivities(&state.solution, &dual, tolerance)?;
+    let result = solver.sensitivities(&state.solution, &dual, TIMED)?;
     let (seconds, shape_seconds) = (result.adjoint_seconds, result.shape_seconds);
-    Ok(Adjoint { tolerance, applications: result.applications, seconds, shape_seconds })
+    Ok(Adjoint { applications: result.applications, seconds, shape_seconds })
 }
 
 /// max(σ, 0) and area per contact node.

@@ -61,8 +61,8 @@ fn a_tiny_case_prints_its_keys_and_counts() {
 
 #[test]
 fn unknown_cases_are_refused_with_what_is_allowed() {
-    for bad in ["7/2", "6", "0/1", "six/2"] {
+    for bad in ["7/2", "6", "0/1", "six/2", "6/0", "401/1", "6/2/1"] {
         kit::refused(SCALING, &["--case", bad], &[bad, "divisor"]);
     }
-    kit::refused(SCALING, &["--quick", "--full"], &["--full"]);
+    kit::refused(SCALING, &["--case", "6/2", "--full"], &["--full"]);
 }
