@@ -9,6 +9,8 @@
 //! compared where it is taken: at the centres of the bricks, and as a mean at the nodes.
 
 use crate::held_block::{self, THREE_POINTS, samples, solution};
+use crate::markdown::{or_dash, seconds as short, section};
+use crate::rates::observed;
 use contact::body::Body;
 use contact::body::elasticity::stiffness::stress;
 use contact::body::elasticity::stress::{COMPONENTS, von_mises};
@@ -96,7 +98,6 @@ pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Failure>
             }
         }
     }
-    let relative = |sums: [f64; 2]| (sums[0] / sums[1]).sqrt();
     Ok(ManufacturedErrors { bricks, dofs, displacement: relative(displacement), energy: relative(energy), seconds })
 }
 
@@ -162,10 +163,32 @@ pub fn manufactured_stress_errors(bricks: usize, formulation: Formulation) -> Re
         nodal[0] += (found - exact).powi(2);
         nodal[1] += exact.powi(2);
     }
-    let relative = |sums: [f64; 2]| (sums[0] / sums[1]).sqrt();
     Ok(StressErrors { bricks, centre: relative(centre), nodal_von_mises: relative(nodal) })
 }
 
 fn contraction(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
+}
+
+/// √(a/b), of a sum of squared errors and a sum of squares.
+fn relative(sums: [f64; 2]) -> f64 {
+    (sums[0] / sums[1]).sqrt()
+}
+
+/// The table of errors, with the rates from mesh to mesh.
+pub fn markdown(meshes: &[ManufacturedErrors]) -> String {
+    let rows = meshes.iter().enumerate().map(|(index, row)| {
+        let before = index.checked_sub(1).map(|index| &meshes[index]);
+        let mut cells = vec![format!("{}³", row.bricks), row.dofs.to_string(), short(row.seconds)];
+        for error in [|row: &ManufacturedErrors| row.displacement, |row: &ManufacturedErrors| row.energy] {
+            let pair = |before: &ManufacturedErrors| {
+                [[before.bricks, row.bricks].map(|n| n as f64), [error(before), error(row)]]
+            };
+            let rate = before.map(pair).and_then(|[meshes, errors]| observed(meshes, errors));
+            cells.extend([format!("{:.2e}", error(row)), or_dash(rate, |rate| format!("{rate:.2}"))]);
+        }
+        cells
+    });
+    let head = "bricks | dofs | seconds | L² error | rate | energy error | rate";
+    section("Smooth solution of linear elasticity", head, rows)
 }

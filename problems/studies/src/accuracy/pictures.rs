@@ -1,10 +1,9 @@
-//! The pictures of a report.
+//! The pictures of a report: what a smaller error costs.
 
-use crate::accuracy::algebra::{AlgebraRow, AlgebraStudy};
+use crate::accuracy::algebra::AlgebraStudy;
+use crate::accuracy::cli::AccuracyReport;
 use crate::accuracy::discretisation::{MeshStudy, QUANTITIES};
-use crate::accuracy::optimization::{Course, Milestone, OptimizationStudy};
-use crate::accuracy::report::AccuracyReport;
-use crate::accuracy::subgradient::{SubgradientStudy, TaylorStudy};
+use crate::accuracy::optimization::OptimizationStudy;
 use crate::scaling::option_name;
 use figures::{Figure, FigureError, LogPlot, Series};
 
@@ -13,118 +12,57 @@ use figures::{Figure, FigureError, LogPlot, Series};
 /// # Errors
 /// [`FigureError`] for numbers that are not finite.
 pub fn all(report: &AccuracyReport) -> Result<Vec<Figure>, FigureError> {
-    let mut plots = Vec::new();
-    plots.extend(report.discretisation.iter().map(mesh));
-    for study in &report.algebra {
-        plots.extend([solvers(study), estimate(study), slopes(study)]);
-    }
-    plots.extend(report.subgradient.as_ref().map(taylor));
-    for study in &report.optimization {
-        plots.push(optimization(study, "seconds", "seconds", |point| point.seconds));
-        let products = "products with the dual operator of the finest mesh";
-        plots.push(optimization(study, "work", products, |point| point.work));
-    }
-    plots.iter().map(LogPlot::figure).collect()
+    let meshes = report.discretisation.iter().map(mesh);
+    let plots = meshes.chain(report.algebra.iter().map(solvers)).chain(report.optimization.iter().map(optimization));
+    plots.map(|plot| plot.figure()).collect()
+}
+
+fn joined(name: &str, points: impl Iterator<Item = (f64, f64)>) -> Series {
+    Series { name: name.to_owned(), points: points.collect(), joined: true }
 }
 
 /// Guides of the rates 1 and 2 through the first error of the first quantity.
 fn mesh(study: &MeshStudy) -> LogPlot {
     let anchor = study.rows.first().map_or((1.0, 1.0), |row| (row.bricks as f64, row.errors[0]));
-    let guide = |rate: f64| (format!("rate {rate}"), anchor.1 * anchor.0.powf(rate), -rate);
-    let of = |(index, name): (usize, &&str)| Series {
-        name: (*name).to_owned(),
-        points: study.rows.iter().map(|row| (row.bricks as f64, row.errors[index])).collect(),
-        joined: true,
+    let of = |(index, name): (usize, &&str)| {
+        joined(name, study.rows.iter().map(|row| (row.bricks as f64, row.errors[index])))
     };
+    let scene = option_name(&study.scene);
     LogPlot {
-        name: format!("accuracy_mesh_{}", option_name(&study.scene)),
-        title: format!("{}: error of the discretisation", option_name(&study.scene)),
+        name: format!("accuracy_mesh_{scene}"),
+        title: format!("{scene}: error of the discretisation"),
         x: "bricks per edge of each body".into(),
         y: "error relative to the extrapolated limit".into(),
         series: QUANTITIES.iter().enumerate().map(of).collect(),
-        guides: vec![guide(1.0), guide(2.0)],
+        guides: [1.0, 2.0].map(|rate| (format!("rate {rate}"), anchor.1 * anchor.0.powf(rate), -rate)).into(),
     }
-}
-
-fn by_method(study: &AlgebraStudy, joined: bool, point: impl Fn(&AlgebraRow) -> (f64, f64)) -> Vec<Series> {
-    let mut series: Vec<Series> = Vec::new();
-    for row in &study.rows {
-        match series.iter_mut().find(|series| series.name == row.method) {
-            Some(series) => series.points.push(point(row)),
-            None => series.push(Series { name: row.method.to_owned(), points: vec![point(row)], joined }),
-        }
-    }
-    series
 }
 
 fn solvers(study: &AlgebraStudy) -> LogPlot {
+    let of_method = study.rows.chunk_by(|one, next| one.method == next.method);
+    let scene = option_name(&study.scene);
     LogPlot {
-        name: format!("accuracy_solvers_{}", option_name(&study.scene)),
-        title: format!("{}, {}³ bricks: what a smaller error of Θ costs", option_name(&study.scene), study.bricks),
+        name: format!("accuracy_solvers_{scene}"),
+        title: format!("{scene}, {}³ bricks: what a smaller error of Θ costs", study.bricks),
         x: "seconds of state and subgradient".into(),
         y: "relative error of Θ by the solver".into(),
-        series: by_method(study, true, |row| (row.seconds, row.value)),
+        series: of_method.map(|rows| joined(rows[0].method, rows.iter().map(|row| (row.seconds, row.value)))).collect(),
         guides: vec![],
     }
 }
 
-fn estimate(study: &AlgebraStudy) -> LogPlot {
+fn optimization(study: &OptimizationStudy) -> LogPlot {
+    let distance = |best: f64| best / study.lowest - 1.0;
+    let courses = study.courses.iter();
+    let scene = option_name(&study.scene);
     LogPlot {
-        name: format!("accuracy_estimate_{}", option_name(&study.scene)),
-        title: format!("{}: the bound reported against the true error of Θ", option_name(&study.scene)),
-        x: "true relative error of Θ".into(),
-        y: "relative bound reported by the solver".into(),
-        series: by_method(study, false, |row| (row.value, row.bound)),
-        guides: vec![("bound = error".into(), 1.0, 1.0)],
-    }
-}
-
-fn slopes(study: &AlgebraStudy) -> LogPlot {
-    LogPlot {
-        name: format!("accuracy_subgradient_{}", option_name(&study.scene)),
-        title: format!("{}, {}³ bricks: error of the subgradient", option_name(&study.scene), study.bricks),
-        x: "relative accuracy asked for".into(),
-        y: "|ξ − ξ*|/|ξ*|".into(),
-        series: by_method(study, true, |row| (row.tolerance, row.subgradient)),
-        guides: vec![("error = accuracy".into(), 1.0, 1.0)],
-    }
-}
-
-fn taylor(study: &SubgradientStudy) -> LogPlot {
-    let of = |taylor: &TaylorStudy| {
-        let value = taylor.test.rows.first().map_or(1.0, |row| row.remainder);
-        Series {
-            name: taylor.scene.clone(),
-            points: taylor.test.rows.iter().map(|row| (row.step, row.remainder / value)).collect(),
-            joined: true,
-        }
-    };
-    let series: Vec<Series> = study.taylor.iter().map(of).collect();
-    let anchor = series.first().and_then(|series| series.points.first()).map_or(1.0, |point| point.0);
-    LogPlot {
-        name: "accuracy_taylor".into(),
-        title: "Taylor remainder of Θ with the subgradient (2 is right)".into(),
-        x: "step along a random direction".into(),
-        y: "|Θ(α + hd) − Θ(α) − h⟨ξ, d⟩|, scaled".into(),
-        series,
-        guides: vec![("slope 2".into(), anchor.powi(-2), 2.0)],
-    }
-}
-
-/// Distance from the lowest Θ over a measure of the price: the name of the axis in the file, its title, and the value.
-fn optimization(study: &OptimizationStudy, axis_name: &str, axis: &str, price: fn(&Milestone) -> f64) -> LogPlot {
-    let of = |course: &Course| Series {
-        name: course.strategy.to_owned(),
-        points: course.points.iter().map(|point| (price(point), point.best / study.lowest - 1.0)).collect(),
-        joined: true,
-    };
-    let fine = study.levels[study.levels.len() - 1];
-    LogPlot {
-        name: format!("accuracy_optimization_{axis_name}_{}", option_name(&study.scene)),
-        title: format!("{}, {fine}³ bricks: distance from the lowest Θ found", option_name(&study.scene)),
-        x: axis.into(),
+        name: format!("accuracy_optimization_work_{scene}"),
+        title: format!("{scene}, {}³ bricks: distance from the lowest Θ found", study.fine),
+        x: "products with the dual operator of the finest mesh".into(),
         y: "(Θ(best) − Θ*)/Θ*".into(),
-        series: study.courses.iter().map(of).collect(),
+        series: courses
+            .map(|course| joined(course.strategy, course.points.iter().map(|point| (point.work, distance(point.best)))))
+            .collect(),
         guides: vec![],
     }
 }
