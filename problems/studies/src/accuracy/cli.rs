@@ -4,13 +4,11 @@ use crate::accuracy::algebra::AlgebraStudy;
 use crate::accuracy::discretisation::MeshStudy;
 use crate::accuracy::manufactured::{self, ManufacturedErrors, manufactured_errors};
 use crate::accuracy::optimization::OptimizationStudy;
-use crate::accuracy::pictures;
 use crate::accuracy::subgradient::SubgradientStudy;
 use crate::scaling::SceneName;
 use clap::{Parser, ValueEnum};
-use problems::commands::{Failure, Folder, arguments, finish, json, notice};
+use problems::commands::{Failure, arguments, finish, json, notice};
 use serde::Serialize;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -43,9 +41,6 @@ struct Options {
     /// Print one JSON object on stdout.
     #[arg(long)]
     json: bool,
-    /// Folder for report.json, report.md and the pictures (SVG; PNG as well with the feature `png`).
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
 }
 
 /// Size of the study; meshes are bricks per edge.
@@ -114,22 +109,8 @@ pub struct AccuracyReport {
 /// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
     let options: Options = arguments();
-    finish(execute(&options), options.out.as_deref())
-}
-
-/// Measures, writes the folder, and returns what belongs on stdout.
-fn execute(options: &Options) -> Result<String, Failure> {
-    let folder = options.out.as_deref().map(|path| Folder::create(path, 1 << 20, false)).transpose()?;
-    let report = measure(options)?;
-    let (object, page) = (json(&report)?, report.markdown());
-    if let Some(folder) = folder {
-        folder.write("report.json", &object)?;
-        folder.write("report.md", &page)?;
-        for figure in pictures::all(&report).map_err(Failure::computation)? {
-            folder.draw(&figure)?;
-        }
-    }
-    Ok(if options.json { object } else { page })
+    let text = measure(&options).and_then(|report| if options.json { json(&report) } else { Ok(report.markdown()) });
+    finish(text, None)
 }
 
 fn measure(options: &Options) -> Result<AccuracyReport, Failure> {

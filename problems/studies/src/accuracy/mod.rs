@@ -5,7 +5,7 @@
 //!      ├─ algebra                           error against tolerance, seconds; the solver's estimate beside it
 //!      ├─ subgradient                       Taylor tables, one-sided slopes at constructed kinks
 //!      └─ optimization                      Θ(best) − Θ* against evaluations and products
-//! every part ─ Markdown, JSON;   pictures (SVG, PNG)
+//! every part ─ Markdown or JSON
 //! ```
 //! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object
 //! on stdout and nothing else there.
@@ -16,7 +16,6 @@ mod discretisation;
 mod manufactured;
 mod objective;
 mod optimization;
-mod pictures;
 mod subgradient;
 
 pub use cli::run;

@@ -9,9 +9,7 @@ fn rows(value: &Value) -> &[Value] {
 
 #[test]
 fn the_smallest_study_holds_what_it_promises() {
-    let scratch = kit::scratch();
-    let folder = scratch.path();
-    let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--smoke", "--json", "--out", kit::text(folder)]);
+    let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--smoke", "--json"]);
     for taylor in rows(&report["subgradient"]["taylor"]) {
         assert!((taylor["test"]["fitted_slope"].as_f64().unwrap() - 2.0).abs() < 0.1, "{taylor}");
     }
@@ -23,10 +21,6 @@ fn the_smallest_study_holds_what_it_promises() {
     }
     for course in rows(&report["optimization"]["courses"]) {
         assert!(course["value"].as_f64().unwrap() < report["optimization"]["start"].as_f64().unwrap());
-    }
-    for name in ["report.json", "report.md", "accuracy_mesh_hertz.svg", "accuracy_solvers_hertz.svg"] {
-        let text = std::fs::read_to_string(folder.join(name)).unwrap();
-        assert!(text.len() > 500 && !text.contains("NaN"), "{name}");
     }
 }
 
