@@ -6,8 +6,7 @@
 //! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, mean dilatation keeps it.
 
 use crate::held_block::{TWO_POINTS, body, solution};
-use crate::stability::case::Case;
-use crate::stability::record::{CaseOutcome, Record};
+use crate::stability::case::{Case, CaseOutcome, Record};
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::mesh::{Grid, block};
 use problems::commands::Failure;

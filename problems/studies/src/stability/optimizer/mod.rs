@@ -1,7 +1,7 @@
 //! Whether what the optimizer says at the end of its runs is true.
 //!
 //! ```text
-//! collection: published problems in variants, compared with their minima ─┬─ Run ─ tables or JSON
+//! collection: published problems in variants, compared with their minima ─┬─ Run ─ tables
 //! units ─ problem: convex problems in variables of different units ───────┘
 //! ```
 
@@ -14,8 +14,7 @@ pub use units::mixed_units;
 
 use crate::markdown::{section, table};
 use clap::ValueEnum;
-use problems::commands::{Failure, json};
-use serde::Serialize;
+use problems::commands::Failure;
 
 /// A part of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -27,7 +26,7 @@ pub enum Part {
 }
 
 /// One run and what it claims.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default)]
 pub struct Run {
     /// Name of the run; `--only` with it takes this run alone.
     pub name: String,
@@ -57,7 +56,7 @@ pub fn offenders(runs: &[Run]) -> Vec<&Run> {
 ///
 /// # Errors
 /// [`Failure::Incomplete`] with the text, and [`Failure::Input`] where no run is selected.
-pub fn page(part: Part, only: Option<&str>, as_json: bool) -> Result<String, Failure> {
+pub fn page(part: Part, only: Option<&str>) -> Result<String, Failure> {
     let wanted = |name: &str| only.is_none_or(|only| name.contains(only));
     let runs = match part {
         Part::Collection => collection(wanted),
@@ -67,7 +66,7 @@ pub fn page(part: Part, only: Option<&str>, as_json: bool) -> Result<String, Fai
     if runs.is_empty() {
         return Err(Failure::Input(format!("--only {}: no run", only.unwrap_or_default())));
     }
-    let text = if as_json { json(&runs)? } else { markdown(&runs, only.is_some()) };
+    let text = markdown(&runs, only.is_some());
     match offenders(&runs).len() {
         0 => Ok(text),
         count => Err(Failure::Incomplete { text, reason: format!("{count} false terminations"), status: 1 }),
