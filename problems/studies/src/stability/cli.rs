@@ -1,22 +1,20 @@
 //! The command line of the study.
 
 use crate::stability::case::{self, CaseOutcome, Record};
-use crate::stability::optimizer::{self, Part};
 use crate::stability::{all, random};
 use clap::Parser;
 use problems::commands::{Failure, Folder, arguments, finish, notice};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What the solvers and the optimizer do with stiff and extreme cases.
+/// What the contact solvers do with stiff and extreme cases.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "stability", version)]
 struct Options {
     /// The fast subset only.
     #[arg(long)]
     quick: bool,
-    /// Only cases whose group or name contains this text; with `--optimizer`, only runs whose name does, each with its
-    /// end.
+    /// Only cases whose group or name contains this text.
     #[arg(long, value_name = "TEXT")]
     only: Option<String>,
     /// Random scenes instead of the cases: so many of them.
@@ -28,9 +26,6 @@ struct Options {
     /// Folder for the files of random scenes that fell short.
     #[arg(long, value_name = "DIR", requires = "random")]
     out: Option<PathBuf>,
-    /// What the optimizer says at the end of its runs, held against what is true; minutes.
-    #[arg(long, value_name = "PART", conflicts_with_all = ["quick", "random"])]
-    optimizer: Option<Part>,
 }
 
 /// Runs the binary with the arguments of the process and returns its exit status.
@@ -40,9 +35,6 @@ pub fn run() -> ExitCode {
 
 /// Runs what the arguments select; the text belongs on stdout, also when cases are broken.
 fn execute(options: &Options) -> Result<String, Failure> {
-    if let Some(part) = options.optimizer {
-        return optimizer::page(part, options.only.as_deref());
-    }
     if let Some(count) = options.random {
         return at_random(options, count as usize);
     }

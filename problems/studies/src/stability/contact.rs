@@ -218,6 +218,7 @@ impl ContactCase {
                 }
             }
         }
+        record.remark = record.remark.trim_start_matches("; ").to_owned();
         record
     }
 

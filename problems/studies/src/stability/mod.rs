@@ -3,8 +3,7 @@
 //! ```text
 //! cli ─┬─ cases ─┬─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record ─ tables
 //!      │         └─ units, locking: scenes and fields compared with each other ─┘
-//!      ├─ random: random scenes by all solvers
-//!      └─ optimizer: what the bundle method says at the end of its runs, compared with known minima
+//!      └─ random: random scenes by all solvers
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a
 //! named kind, or a limit with its cause. Anything else is *broken* and makes the exit status 1. Contract (kept
@@ -18,7 +17,6 @@ mod geometry;
 mod loads;
 mod locking;
 mod materials;
-mod optimizer;
 mod random;
 mod scenes;
 mod units;
@@ -26,7 +24,6 @@ mod units;
 pub use case::{Case, CaseOutcome, Record, counts};
 pub use cli::run;
 pub use locking::field_error;
-pub use optimizer::{Run, collection, mixed_units, offenders};
 pub use random::run as random_scenes;
 
 /// All cases, in the order of the page.

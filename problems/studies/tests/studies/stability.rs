@@ -1,5 +1,6 @@
 //! Groups of the stability study, contraction factors, and random scenes: certificates, not numbers.
 
+use crate::optimizer::{check, collection, mixed_units};
 use contact::body::elasticity::{Formulation, Material};
 use contact::contact_shape::SolverKind;
 use contact::direct::DirectSolver;
@@ -12,9 +13,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 use std::sync::Arc;
-use studies::stability::{
-    CaseOutcome, Record, all, collection, counts, field_error, mixed_units, offenders, random_scenes,
-};
+use studies::stability::{CaseOutcome, Record, all, counts, field_error, random_scenes};
 
 fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
     TotalFeti::new(Arc::clone(problem), TornOptions::default()).unwrap()
@@ -40,17 +39,13 @@ fn supports_kinks_and_units_are_as_expected() {
 #[test]
 fn the_terminations_are_true_on_a_sample() {
     let number = Cell::new(0);
-    let runs = collection(|_| number.replace(number.get() + 1) % 97 == 0).unwrap();
-    assert!(runs.len() > 25, "{}", runs.len());
-    assert!(offenders(&runs).is_empty(), "{:#?}", offenders(&runs));
+    check(&collection(|_| number.replace(number.get() + 1) % 97 == 0), 25);
 }
 
 /// The problems of users and one of each family, set and range of units; all runs are in the test `long`.
 #[test]
 fn the_terminations_are_true_in_mixed_units_on_a_sample() {
-    let runs = mixed_units(|name| name.starts_with("problems of users") || name.ends_with("#4")).unwrap();
-    assert!(runs.len() > 480, "{}", runs.len());
-    assert!(offenders(&runs).is_empty(), "{:#?}", offenders(&runs));
+    check(&mixed_units(|name| name.starts_with("problems of users") || name.ends_with("#4")), 480);
 }
 
 #[test]

@@ -8,13 +8,13 @@
 //!                    or   x outside of the set by more than 1e-9
 //! ```
 
-use crate::stability::optimizer::Run;
-use crate::stability::optimizer::problem::Problem;
+use super::Run;
+use super::problem::Problem;
 use nonsmooth::composite::FnOuter;
 use nonsmooth::interruption::watched;
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, FnObjective, InputError, OptimizeError, Report,
-    Termination, Vector,
+    BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, FnObjective, OptimizeError, Report, Termination,
+    Vector,
 };
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -119,7 +119,7 @@ fn minimise(case: &UnitCase, problem: &Problem) -> Result<Report, OptimizeError>
     let (n, offset, start) = (case.units.len(), case.offset, case.start.component_mul(&case.units));
     let convexity = if case.given == "convex" { Convexity::Convex } else { Convexity::Unknown };
     let config = BundleTrustConfig { max_evaluations: MAX_EVALUATIONS, convexity, ..Default::default() };
-    let mut method = BundleTrust::new(config)?.constraints(problem.set()?);
+    let mut method = BundleTrust::new(config)?.constraints(problem.set());
     let outer = problem.outer.function();
     if case.given != "outputs" {
         let theta = FnObjective::new(n, |x: &Vector| {
@@ -138,12 +138,9 @@ fn minimise(case: &UnitCase, problem: &Problem) -> Result<Report, OptimizeError>
 }
 
 /// Runs one case. A run that the engine refuses does not reach the minimum.
-///
-/// # Errors
-/// [`InputError`] if the problem cannot be posed.
-fn checked(case: UnitCase) -> Result<Run, InputError> {
+fn checked(case: UnitCase) -> Run {
     let problem = case.problem.in_units(&case.units);
-    let set = problem.set()?;
+    let set = problem.set();
     let (boxed, begin) = (problem.is_boxed(), Instant::now());
     let given = format!("{}, {}", case.given, if boxed { "box" } else { "no box" });
     let report = watched(move || begin.elapsed() > LONGEST_RUN, || minimise(&case, &problem));
@@ -152,7 +149,7 @@ fn checked(case: UnitCase) -> Result<Run, InputError> {
         Ok(report) => report,
         Err(error) => {
             run.termination = format!("refused: {error}");
-            return Ok(run);
+            return run;
         }
     };
     let minimum = case.problem.value(&case.problem.minimiser);
@@ -175,14 +172,11 @@ fn checked(case: UnitCase) -> Result<Run, InputError> {
     };
     run.evaluations = report.counts.evaluations;
     run.termination = report.termination.to_string();
-    Ok(run)
+    run
 }
 
 /// Runs those that `wanted` selects by their names, on all processors; they keep their order.
-///
-/// # Errors
-/// [`InputError`] if a problem cannot be posed.
-pub fn mixed_units(mut wanted: impl FnMut(&str) -> bool) -> Result<Vec<Run>, InputError> {
+pub fn mixed_units(mut wanted: impl FnMut(&str) -> bool) -> Vec<Run> {
     let cases: Vec<UnitCase> = cases().into_iter().filter(|case| wanted(&case.name)).collect();
     cases.into_par_iter().map(checked).collect()
 }

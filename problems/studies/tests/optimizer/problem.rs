@@ -7,7 +7,7 @@
 //! A, b, p and ν are random; A − p (Aᵀp + ν)ᵀ/|p|² in place of A makes the equation hold.
 
 use nonsmooth::composite::{GroupNorms, Maximum, OuterFunction, SumOfPowers};
-use nonsmooth::{InputError, Matrix, Polyhedron, Vector};
+use nonsmooth::{Matrix, Polyhedron, Vector};
 use testset::kit::Random;
 
 /// The function h of the residuals.
@@ -236,13 +236,11 @@ impl Problem {
     }
 
     /// The admissible set.
-    ///
-    /// # Errors
-    /// [`InputError`] if the data are no polyhedron.
-    pub fn set(&self) -> Result<Polyhedron, InputError> {
+    pub fn set(&self) -> Polyhedron {
         let (rows, sides) = &self.rows;
         let open = Vector::from_element(sides.len(), f64::NEG_INFINITY);
-        Polyhedron::boxed(self.lower.clone(), self.upper.clone())?.with_rows(rows, &open, sides)
+        let set = Polyhedron::boxed(self.lower.clone(), self.upper.clone()).unwrap();
+        set.with_rows(rows, &open, sides).unwrap()
     }
 
     /// The arguments of h and their Jacobian; the square is added to all of them, as h(r + t) = h(r) + t.

@@ -8,10 +8,10 @@
 //! *noise limit* of a convex function above ten times the noise; or if it is a failure of the oracle or of the
 //! subproblem above the gap although the oracle answers at the best point.
 
-use crate::stability::optimizer::Run;
+use super::Run;
 use nonsmooth::{
-    Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError,
-    Polyhedron, Report, Request, Termination, Vector,
+    Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, Matrix, NonsmoothObjective, OracleError, Polyhedron,
+    Report, Request, Termination, Vector,
 };
 use rayon::prelude::*;
 use std::cell::Cell;
@@ -92,7 +92,7 @@ struct Changed<'p> {
 
 impl Changed<'_> {
     /// The admissible set, with the wide side.
-    fn set(&self) -> Result<Polyhedron, InputError> {
+    fn set(&self) -> Polyhedron {
         let problem = self.problem;
         let mut lower = Vector::from_column_slice(&problem.lower);
         let mut upper = Vector::from_column_slice(&problem.upper);
@@ -104,7 +104,8 @@ impl Changed<'_> {
         }
         let rows = Matrix::from_fn(problem.rows.len(), problem.dimension, |i, j| problem.rows[i][j]);
         let side = |values: &[f64]| Vector::from_column_slice(values);
-        Polyhedron::boxed(lower, upper)?.with_rows(&rows, &side(&problem.row_lower), &side(&problem.row_upper))
+        let set = Polyhedron::boxed(lower, upper).unwrap();
+        set.with_rows(&rows, &side(&problem.row_lower), &side(&problem.row_upper)).unwrap()
     }
 
     /// η (1 + |f*|), in units of f.
@@ -112,7 +113,7 @@ impl Changed<'_> {
         self.variant.noise * (1.0 + self.problem.optimal_value.abs())
     }
 
-    fn run(&self, name: String) -> Result<Run, InputError> {
+    fn run(&self, name: String) -> Run {
         let (problem, variant) = (self.problem, self.variant);
         let kind = if problem.convex { "convex" } else { "not convex" };
         let mut run = Run {
@@ -124,12 +125,12 @@ impl Changed<'_> {
         let convexity = if problem.convex { Convexity::Convex } else { Convexity::Unknown };
         let config = BundleTrustConfig { max_evaluations: MAX_EVALUATIONS, convexity, ..BundleTrustConfig::default() };
         let start = Vector::from_column_slice(&problem.start) * variant.start;
-        match BundleTrust::new(config)?.constraints(self.set()?).minimize(self, start) {
+        match BundleTrust::new(config).unwrap().constraints(self.set()).minimize(self, start) {
             Ok(report) => self.check(&mut run, &report),
             // The start has no value.
             Err(error) => run.termination = error.to_string(),
         }
-        Ok(run)
+        run
     }
 
     fn check(&self, run: &mut Run, report: &Report) {
@@ -197,15 +198,12 @@ impl NonsmoothObjective for Changed<'_> {
 
 /// Runs the variants that `wanted` selects by their names, on all processors; they keep their order. Runs whose start
 /// has no value are left out.
-///
-/// # Errors
-/// [`InputError`] if a problem of the collection cannot be posed.
-pub fn collection(mut wanted: impl FnMut(&str) -> bool) -> Result<Vec<Run>, InputError> {
+pub fn collection(mut wanted: impl FnMut(&str) -> bool) -> Vec<Run> {
     let (problems, variants) = (testset::all(), variants());
     let all = problems.iter().flat_map(|problem| variants.iter().enumerate().map(move |of| (problem, of)));
     let named = all.map(|(problem, (number, variant))| (format!("{}, #{number}", problem.name), problem, *variant));
     let chosen: Vec<(String, &Problem, Variant)> = named.filter(|(name, ..)| wanted(name)).collect();
     let run = |(name, problem, variant)| Changed { problem, variant, calls: Cell::new(0) }.run(name);
-    let runs: Result<Vec<Run>, InputError> = chosen.into_par_iter().map(run).collect();
-    Ok(runs?.into_iter().filter(|run| run.evaluations > 0).collect())
+    let runs: Vec<Run> = chosen.into_par_iter().map(run).collect();
+    runs.into_iter().filter(|run| run.evaluations > 0).collect()
 }
