@@ -19,4 +19,4 @@ mod optimization;
 mod subgradient;
 
 pub use cli::run;
-pub use manufactured::{manufactured_errors, manufactured_stress_errors};
+pub use manufactured::{manufactured_errors, smooth_gradient, smooth_solution};
