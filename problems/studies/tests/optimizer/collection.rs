@@ -3,8 +3,8 @@
 //! ```text
 //! Θ(x) = a·(f(x) + η (1 + |f*|) noise) + s,   start σ x₀,   one variable with a wide side, one call in ten failing
 //! ```
-//! An end is false if it is *confirmed* above the gap, unless it is a known local minimum, or the function is convex and
-//! the bound stated for a finite box holds; if it is *confirmed* where the oracle is noisy and says so; if it is a
+//! An end is false if it is *confirmed* above the gap, unless it is a known local minimum, or the function is convex
+//! and the bound stated for a finite box holds; if it is *confirmed* where the oracle is noisy and says so; if it is a
 //! *noise limit* of a convex function above ten times the noise; or if it is a failure of the oracle or of the
 //! subproblem above the gap although the oracle answers at the best point.
 
@@ -23,7 +23,7 @@ const MAX_EVALUATIONS: usize = 1000;
 const GAP: (f64, f64) = (1e-5, 1e-6);
 /// Times the noise that the gap of a convex function may be at a noise limit.
 const NOISE_GAP: f64 = 10.0;
-/// Bounds of the box with one wide side: of all entries, in largest entries of the start (at least 1), and of the first.
+/// Bounds of the box with one wide side: of all entries, in largest entries of the start (at least 1); of the first.
 const SIDES: (f64, f64) = (100.0, 1e8);
 /// Every how many calls one fails.
 const FAILING: usize = 10;

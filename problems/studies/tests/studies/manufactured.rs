@@ -23,8 +23,8 @@ fn smooth_solution_converges_at_the_rates_of_trilinear_bricks() {
     }
 }
 
-/// Relative errors of the stress recovered for pictures, where it is taken: √(Σ V|σ − σ_h|²/Σ V|σ|²) over the centres of
-/// the bricks, and |σ_vM − σ_vM,h| over |σ_vM| over the nodes, Euclidean norms.
+/// Relative errors of the stress recovered for pictures, where it is taken: √(Σ V|σ − σ_h|²/Σ V|σ|²) over the centres
+/// of the bricks, and |σ_vM − σ_vM,h| over |σ_vM| over the nodes, Euclidean norms.
 fn stress_errors(bricks: usize, formulation: Formulation) -> [f64; 2] {
     let material = Material::new(1.0, 0.3).unwrap().with_formulation(formulation);
     let (body, _, displacement) = smooth_solution(bricks, material).unwrap();

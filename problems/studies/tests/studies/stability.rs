@@ -35,8 +35,8 @@ fn supports_kinks_and_units_are_as_expected() {
     assert_eq!(outcomes(&["supports", "kinks", "units"]), [11, 3, 0, 0]);
 }
 
-/// Every 79th run, but for chains of 50 variables, one of which takes longer than all others together; all of them are in
-/// the test `long`.
+/// Every 79th run, but for chains of 50 variables, one of which takes longer than all others together; all of them
+/// are in the test `long`.
 #[test]
 fn the_terminations_are_true_on_a_sample() {
     let number = Cell::new(0);
