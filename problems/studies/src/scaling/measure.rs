@@ -36,7 +36,7 @@ pub enum Start {
     Warm,
 }
 
-/// Work and time of a state.
+/// Work and time of a state, and of a subgradient where one was computed.
 #[derive(Debug, Serialize)]
 pub struct Solve {
     start: Start,
@@ -50,10 +50,11 @@ pub struct Solve {
     seconds: f64,
     /// Stages of these; none for direct condensation.
     pub stages: Option<StageSeconds>,
+    pub adjoint: Option<Adjoint>,
 }
 
 /// Work and time of a subgradient.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Adjoint {
     /// Products with the dual operator; 0 for direct condensation.
     pub applications: usize,
@@ -61,13 +62,6 @@ pub struct Adjoint {
     pub seconds: f64,
     /// Wall-clock seconds of the element sums.
     shape_seconds: f64,
-}
-
-/// A state and its subgradient, both timed.
-#[derive(Debug, Serialize)]
-pub struct Sample {
-    pub state: Solve,
-    pub adjoint: Adjoint,
 }
 
 /// One case with one solver: keys of the JSON output.
@@ -89,12 +83,8 @@ pub struct ScalingRow {
     pub contact_nodes: usize,
     /// Seconds of what is done once per run: patterns, symbolic analysis, rows.
     pub setup_seconds: f64,
-    /// State to 1e-8 and subgradient to 1e-8 from nothing: the repetition of median time.
-    pub cold: Sample,
-    /// State and subgradient to 1e-8 after a small change of the controls, started from the old multipliers.
-    pub warm: Option<Sample>,
-    /// States to other tolerances.
-    others: Vec<Solve>,
+    /// States to all tolerances; first those to 1e-8, with subgradients to 1e-8, the repetitions of median time.
+    solves: Vec<Solve>,
     /// Peak resident memory of the process in this case, GiB; none where the system does not tell.
     pub peak_memory: Option<f64>,
     /// Messages about solves that did not reach their tolerance.
@@ -106,20 +96,22 @@ impl Solve {
     pub fn applications(&self) -> usize {
         self.work.dual_operator_applications
     }
-}
 
-impl Sample {
     /// Seconds of state and subgradient.
-    pub fn seconds(&self) -> f64 {
-        self.state.seconds + self.adjoint.seconds + self.adjoint.shape_seconds
+    pub fn total_seconds(&self) -> f64 {
+        self.seconds + self.adjoint.map_or(0.0, |adjoint| adjoint.seconds + adjoint.shape_seconds)
     }
 }
 
 impl ScalingRow {
     /// The state solved from `start` to `tolerance`.
     pub fn solve(&self, start: Start, tolerance: f64) -> Option<&Solve> {
-        let timed = std::iter::once(&self.cold).chain(&self.warm).map(|sample| &sample.state);
-        timed.chain(&self.others).find(|solve| solve.start == start && solve.tolerance == tolerance)
+        self.solves.iter().find(|solve| solve.start == start && solve.tolerance == tolerance)
+    }
+
+    /// The state from nothing to 1e-8, which every row has.
+    pub fn cold(&self) -> &Solve {
+        &self.solves[0]
     }
 }
 
@@ -144,16 +136,29 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
             // A solver keeps the factors of bodies whose shape has not changed; a cold state must not have them.
             solver = variant.solver(&problem, clusters)?;
         }
-        let (sample, state) = sample(&solver, &controls, None)?;
+        let (state, solve) = solve(&solver, &controls, None, TIMED)?;
         restart = Some(state.solution.warm_start());
-        Ok(sample)
-    })
-    .map_err(failure)?;
-    let mut failures = Vec::new();
-    let warm = median(|| Ok(sample(&solver, &nearby, restart.as_ref())?.0));
-    let warm = warm.map_err(|error| failures.push(format!("warm to {TIMED:e}: {error}"))).ok();
-    let others =
-        if variant == Variant::Direct { Vec::new() } else { counted(&solver, [&controls, &nearby], &mut failures) };
+        Ok(solve)
+    });
+    let (mut solves, mut failures) = (vec![cold.map_err(failure)?], Vec::new());
+    match median(|| Ok(solve(&solver, &nearby, restart.as_ref(), TIMED)?.1)) {
+        Ok(warm) => solves.push(warm),
+        Err(error) => failures.push(format!("warm to {TIMED:e}: {error}")),
+    }
+    if variant != Variant::Direct {
+        let mut count = |controls: &[f64], restart: Option<&ContactWarmStart>, tolerance: f64| {
+            let solved = solve(&solver, controls, restart, tolerance);
+            let start = if restart.is_some() { "warm" } else { "cold" };
+            let (state, solve) =
+                solved.map_err(|error| failures.push(format!("{start} to {tolerance:e}: {error}"))).ok()?;
+            solves.push(solve);
+            Some(state.solution.warm_start())
+        };
+        count(&controls, None, COLD[0]);
+        if let Some(restart) = count(&controls, None, COLD[1]) {
+            count(&nearby, Some(&restart), COLD[1]);
+        }
+    }
     Ok(ScalingRow {
         scene,
         case,
@@ -164,9 +169,7 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
         multipliers,
         contact_nodes: problem.boundary.points.len(),
         setup_seconds,
-        cold,
-        warm,
-        others,
+        solves,
         peak_memory: memory::peak(),
         failures,
     })
@@ -183,47 +186,16 @@ fn failure(error: ContactError) -> Failure {
 }
 
 /// The repetition of median time; one alone when it takes long.
-fn median(mut run: impl FnMut() -> Result<Sample, ContactError>) -> Result<Sample, ContactError> {
-    let mut samples = vec![run()?];
-    while samples.len() < REPETITIONS && samples[0].seconds() < LONG_RUN {
-        samples.push(run()?);
+fn median(mut run: impl FnMut() -> Result<Solve, ContactError>) -> Result<Solve, ContactError> {
+    let mut solves = vec![run()?];
+    while solves.len() < REPETITIONS && solves[0].total_seconds() < LONG_RUN {
+        solves.push(run()?);
     }
-    samples.sort_by(|a, b| a.seconds().total_cmp(&b.seconds()));
-    Ok(samples.swap_remove(samples.len() / 2))
+    solves.sort_by(|a, b| a.total_seconds().total_cmp(&b.total_seconds()));
+    Ok(solves.swap_remove(solves.len() / 2))
 }
 
-/// A state to [`TIMED`] and its subgradient.
-fn sample(
-    solver: &Solver,
-    controls: &[f64],
-    start: Option<&ContactWarmStart>,
-) -> Result<(Sample, ContactState), ContactError> {
-    let (found, state) = solve(solver, controls, start, TIMED)?;
-    let adjoint = adjoint(solver, &found)?;
-    Ok((Sample { state, adjoint }, found))
-}
-
-/// States to the other tolerances: cold at the first controls, warm at the second from that cold state.
-fn counted(solver: &Solver, [controls, nearby]: [&[f64]; 2], failures: &mut Vec<String>) -> Vec<Solve> {
-    let mut solves = Vec::new();
-    let mut record = |controls: &[f64], restart: Option<&ContactWarmStart>, tolerance: f64| {
-        let start = if restart.is_some() { Start::Warm } else { Start::Cold };
-        let solved = solve(solver, controls, restart, tolerance);
-        let solved = solved.map_err(|error| failures.push(format!("{start:?} to {tolerance:e}: {error}")));
-        let (state, solve) = solved.ok()?;
-        solves.push(solve);
-        Some(state.solution.warm_start())
-    };
-    for tolerance in COLD {
-        let restart = record(controls, None, tolerance);
-        if let Some(restart) = restart.filter(|_| tolerance == COLD[1]) {
-            record(nearby, Some(&restart), tolerance);
-        }
-    }
-    solves
-}
-
-/// Solves a state and measures its time.
+/// Solves a state, to [`TIMED`] with its subgradient, and measures the time.
 fn solve(
     solver: &Solver,
     controls: &[f64],
@@ -232,13 +204,15 @@ fn solve(
 ) -> Result<(ContactState, Solve), ContactError> {
     let clock = Instant::now();
     let state = solver.solve(controls, start, tolerance)?;
+    let seconds = clock.elapsed().as_secs_f64();
     let solve = Solve {
         start: if start.is_some() { Start::Warm } else { Start::Cold },
         tolerance,
         work: state.work(),
         objective: pressures(&state).map(|(pressure, _)| pressure.powi(EXPONENT)).sum(),
-        seconds: clock.elapsed().as_secs_f64(),
+        seconds,
         stages: state.stages,
+        adjoint: if tolerance == TIMED { Some(adjoint(solver, &state)?) } else { None },
     };
     Ok((state, solve))
 }

@@ -8,7 +8,7 @@ use contact::equilibrium::StageSeconds;
 
 /// One line for the terminal.
 pub fn progress(row: &ScalingRow) -> String {
-    let (seconds, products) = (row.cold.seconds(), row.cold.state.applications());
+    let (seconds, products) = (row.cold().total_seconds(), row.cold().applications());
     format!("{}: {} dofs, cold {seconds:.2} s, {products} products", name(row).join(" "), row.dofs)
 }
 
@@ -34,10 +34,10 @@ fn counts(rows: &[ScalingRow]) -> String {
         let mut cells = name(row);
         cells.extend([row.dofs, row.multipliers, row.contact_nodes].map(|n| n.to_string()));
         cells.push(or_dash(row.coarse_unknowns, |n| n.to_string()));
-        cells.push(row.cold.state.work.newton_steps.to_string());
+        cells.push(row.cold().work.newton_steps.to_string());
         cells.extend([COLD[0], TIMED, COLD[1]].map(|tolerance| count(Start::Cold, tolerance)));
         cells.extend([TIMED, COLD[1]].map(|tolerance| count(Start::Warm, tolerance)));
-        cells.push(row.cold.adjoint.applications.to_string());
+        cells.push(row.cold().adjoint.unwrap_or_default().applications.to_string());
         cells
     });
     let head = "N/S | solver | dofs | rows of B | contact nodes | coarse unknowns | Newton steps, 1e-8 | cold 1e-6 | 1e-8 | \
@@ -47,13 +47,16 @@ fn counts(rows: &[ScalingRow]) -> String {
 
 fn seconds(rows: &[ScalingRow]) -> String {
     let rows = rows.iter().map(|row| {
-        let stages = row.cold.state.stages;
+        let stages = row.cold().stages;
         let stage = |value: fn(&StageSeconds) -> f64| or_dash(stages.as_ref(), |stages| short(value(stages)));
         let mut cells = name(row);
         cells.push(short(row.setup_seconds));
         cells.extend([stage(|s| s.factorization), stage(|s| s.coarse_space), stage(|s| s.newton)]);
-        cells.extend([short(row.cold.adjoint.seconds), short(row.cold.seconds())]);
-        cells.push(or_dash(row.warm.as_ref(), |warm| short(warm.seconds())));
+        cells.push(short(row.cold().adjoint.unwrap_or_default().seconds));
+        cells.extend(
+            [Start::Cold, Start::Warm]
+                .map(|start| or_dash(row.solve(start, TIMED), |solve| short(solve.total_seconds()))),
+        );
         cells.push(or_dash(row.peak_memory, |gib| format!("{gib:.2}")));
         cells
     });
@@ -69,7 +72,7 @@ fn growth(rows: &[ScalingRow]) -> String {
             let default = row.variant == Variant::Dirichlet && row.clusters == 1;
             default && row.case.ratio() == RATIO && row.case.subdomains >= least
         });
-        exponent(alike.map(|row| [row.dofs as f64, row.cold.seconds()]))
+        exponent(alike.map(|row| [row.dofs as f64, row.cold().total_seconds()]))
     };
     let show = |exponent| or_dash(exponent, |exponent: f64| format!("{exponent:.2}"));
     format!("\nExponent of cold seconds in dofs at H/h = {RATIO}: {}; from s = 3 on: {}.\n", show(of(1)), show(of(3)))
