@@ -7,7 +7,7 @@
 //! The block has a curved upper surface; u is prescribed on all of its boundary. Integrals by 3 × 3 × 3 Gauss points,
 //! where the gradients are not better than elsewhere (at 2 × 2 × 2 they are).
 
-use crate::held_block::{self, THREE_POINTS, samples, solution};
+use crate::held_block::{self, samples, solution};
 use crate::markdown::{or_dash, seconds as short, section};
 use crate::rates::observed;
 use contact::body::Body;
@@ -63,7 +63,7 @@ pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Failure>
     let (mut square, mut energy) = ([0.0; 2], [0.0; 2]);
     for brick in 0..body.mesh.cell_count() {
         let local = body.mesh.cell_values(brick, &u);
-        for sample in samples(&body.mesh, brick, &THREE_POINTS) {
+        for sample in samples(&body.mesh, brick) {
             let (exact, slope) = (displacement(sample.x), smooth_gradient(sample.x));
             let found = sample.point.gradient(&local);
             let difference = std::array::from_fn(|j| std::array::from_fn(|i| found[j][i] - slope[j][i]));
@@ -93,7 +93,7 @@ pub fn smooth_solution(bricks: usize, material: Material) -> Result<(Body, usize
     let square: f64 = WAVE.iter().map(|k| k * k).sum();
     let force: [f64; 3] = std::array::from_fn(|i| (lambda + mu) * along * WAVE[i] + mu * square * AMPLITUDE[i]);
     let body_force = |x: [f64; 3]| force.map(|f| f * argument(x).sin());
-    let (free, u) = solution(&body, &THREE_POINTS, (&body_force, &displacement))?;
+    let (free, u) = solution(&body, (&body_force, &displacement))?;
     Ok((body, free, u.as_chunks().0.to_vec()))
 }
 

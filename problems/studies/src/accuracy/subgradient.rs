@@ -6,7 +6,7 @@
 //! ```
 
 use crate::accuracy::objective::{objective_of, perturbed};
-use crate::markdown::{or_dash, section, yes_or_no};
+use crate::markdown::{or_dash, section};
 use crate::scaling::{SceneName, option_name};
 use contact::equilibrium::ContactStatus;
 use contact::load_cases::CaseStates;
@@ -84,7 +84,7 @@ impl SubgradientStudy {
         let kinks = self.kinks.iter().map(|kink| {
             let mut cells = vec![kink.scene.clone(), kink.change.clone()];
             cells.extend([kink.before, kink.after, kink.product].map(|slope| format!("{slope:.6e}")));
-            cells.push(yes_or_no(kink.bracketed));
+            cells.push(if kink.bracketed { "yes" } else { "no" }.into());
             cells
         });
         let head = "where | change of status | slope before | slope after | ⟨ξ, d⟩ at the kink | bracketed";

@@ -86,21 +86,13 @@ pub struct Case {
     pub group: &'static str,
     /// Name within the group.
     pub name: String,
-    /// Whether the fast subset contains it.
-    pub quick: bool,
     run: Box<dyn Fn() -> Record + Send + Sync>,
 }
 
 impl Case {
-    /// A case of the fast subset; the record that `run` makes gets group and name from here.
+    /// A case; the record that `run` makes gets group and name from here.
     pub fn new(group: &'static str, name: impl Into<String>, run: impl Fn() -> Record + Send + Sync + 'static) -> Self {
-        Self { group, name: name.into(), quick: true, run: Box::new(run) }
-    }
-
-    /// Takes the case out of the fast subset.
-    #[must_use]
-    pub fn slow(self) -> Self {
-        Self { quick: false, ..self }
+        Self { group, name: name.into(), run: Box::new(run) }
     }
 
     /// Runs the case and records its outcome.

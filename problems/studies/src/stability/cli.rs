@@ -11,14 +11,11 @@ use std::process::ExitCode;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "stability", version)]
 struct Options {
-    /// The fast subset only.
-    #[arg(long)]
-    quick: bool,
     /// Only cases whose group or name contains this text.
     #[arg(long, value_name = "TEXT")]
     only: Option<String>,
     /// Random scenes instead of the cases: so many of them.
-    #[arg(long, value_name = "COUNT", conflicts_with_all = ["quick", "only"], value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "COUNT", conflicts_with = "only", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     random: Option<u32>,
     /// Seed of the random scenes.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "random")]
@@ -45,7 +42,7 @@ fn execute(options: &Options) -> Result<String, Failure> {
         notice(&record.progress());
         record
     };
-    let records: Vec<Record> = cases.filter(|case| case.quick || !options.quick).map(run).collect();
+    let records: Vec<Record> = cases.map(run).collect();
     if records.is_empty() {
         return Err(Failure::Input(format!("--only {}: no case", options.only.as_deref().unwrap_or_default())));
     }

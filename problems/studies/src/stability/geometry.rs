@@ -27,13 +27,12 @@ pub fn cases() -> Vec<Case> {
             // Total FETI may reach no residual of 1e-8 in the unit of the contact forces, and says so.
             case = case.limit([&["BeyondPrecision", "Inaccurate"], &[]], FACTORS);
         }
-        let case = case.case(GROUP, format!("height to width {:e}", height / 10.0));
-        cases.push(if (1.0..=1e3).contains(&height) { case } else { case.slow() });
+        cases.push(case.case(GROUP, format!("height to width {:e}", height / 10.0)));
     }
     for (label, size) in [("1000 : 1 plan", [10.0, 1e4]), ("1 : 1000 plan", [10.0, 1e-2])] {
         let scene = stacked(0.3, 1.0, 0.05).map(|scene| scene.with_blocks(|blocks| blocks.size = size));
         let case = ContactCase::new(scene).check(uniform(1.0, 0.05));
-        cases.push(case.limit([&["BeyondPrecision"], &[]], FACTORS).case(GROUP, label).slow());
+        cases.push(case.limit([&["BeyondPrecision"], &[]], FACTORS).case(GROUP, label));
     }
     for (label, height) in [
         ("one corner column of 1 % of the height", 1.0),
