@@ -21,8 +21,6 @@ pub(super) enum Sign<'a> {
     Shape(&'a str, usize),
     /// A square of a colour.
     Swatch(&'a str),
-    /// The point of a series, with the number of the series.
-    Point(usize),
     Cross,
     Line(Stroke<'a>),
 }
@@ -59,7 +57,6 @@ pub(super) fn legend(canvas: &mut Canvas, [x, mut y]: Place, rows: &[(Sign, Stri
             Sign::Mark(kind, index) => mark(canvas, &format!("legend {kind}"), *index, mark_colour(*index), middle, ""),
             Sign::Shape(kind, index) => mark(canvas, &format!("legend {kind}"), *index, INK, middle, ""),
             Sign::Swatch(colour) => canvas.rectangle([middle[0] - 5.0, y - 5.0], [10.0, 10.0], colour),
-            Sign::Point(index) => point(canvas, "legend", *index, middle),
             Sign::Cross => cross(canvas, middle),
             Sign::Line(stroke) => canvas.line(&[[x, y], [x + LINE, y]], *stroke),
         }

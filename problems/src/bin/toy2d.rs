@@ -1,7 +1,7 @@
 //! Minimises the 2D toy with the bundle-trust engine and compares with the known minimiser.
 
 use clap::Parser;
-use figures::{self, Convergence, Step, Visit};
+use figures::{Landscape, Visit};
 use nonsmooth::IterationRecord;
 use problems::commands::{Failure, Folder, arguments, finish, printed_with_files};
 use problems::toy;
@@ -25,7 +25,7 @@ struct Arguments {
     /// Print one JSON object instead of the page
     #[arg(long)]
     json: bool,
-    /// Folder for pictures of the landscape with the points of the first run, and of its course
+    /// Folder for a picture of the landscape with the points of the first run
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
@@ -51,7 +51,7 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
         if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
     let text = text.trim_end().to_owned() + "\n";
     let draw =
-        |folder: &Folder| starts.first().map_or(Ok(()), |start| pictures(folder, *start, arguments.cells as usize));
+        |folder: &Folder| starts.first().map_or(Ok(()), |start| picture(folder, *start, arguments.cells as usize));
     let text = printed_with_files(text, arguments.json, folder.as_ref(), draw)?;
     if study.all_found() {
         return Ok(text);
@@ -61,12 +61,11 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     Err(Failure::Incomplete { text, reason, status: 1 })
 }
 
-/// Landscape with kinks and the points of a run, and the course of that run.
-fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failure> {
+/// The landscape with its kinks and the points of a run.
+fn picture(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failure> {
     let trace = toy::trace(start)?;
-    let history = &trace.report.history;
     let visit = |(record, &place): (&IterationRecord, &[f64; 2])| Visit { kind: record.kind.to_string(), place };
-    let ground = figures::Landscape {
+    let ground = Landscape {
         name: "landscape".into(),
         title: "Two nodes on a shaped support with friction: Θ and the points of a run".into(),
         quantity: "Θ".into(),
@@ -76,31 +75,10 @@ fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failur
         size: [toy::UPPER - toy::LOWER; 2],
         values: toy::landscape(cells)?.into_iter().map(|(_, value)| value).collect(),
         lines: Some(("kink of a node".into(), toy::kink_lines())),
-        path: history.iter().zip(&trace.points).map(visit).collect(),
+        path: trace.report.history.iter().zip(&trace.points).map(visit).collect(),
         goal: Some(("minimiser".into(), toy::MINIMISER)),
     };
-    let step = |record: &IterationRecord| Step {
-        kind: record.kind.to_string(),
-        origin: record.origin.to_string(),
-        value: record.value.map(|value| value - toy::MINIMUM),
-        best: record.center_value - toy::MINIMUM,
-    };
-    let course = Convergence {
-        name: "convergence".into(),
-        title: "Distance to the minimum".into(),
-        quantity: "Θ − Θ*".into(),
-        unit: String::new(),
-        // A logarithmic axis has no place for a distance that is all rounding.
-        steps: history.iter().map(step).filter(|step| step.best > f64::EPSILON).collect(),
-        course: "best so far".into(),
-        reference: None,
-    };
-    folder.draw(&ground.figure().map_err(Failure::computation)?)?;
-    if course.steps.is_empty() {
-        // A start at the minimiser: no distance is left to show.
-        return Ok(());
-    }
-    folder.draw(&course.figure().map_err(Failure::computation)?)
+    folder.draw(&ground.figure().map_err(Failure::computation)?)
 }
 
 fn parse_start(text: &str) -> Result<[f64; 2], String> {

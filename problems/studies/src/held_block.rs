@@ -8,10 +8,8 @@ use contact::scene::{BodyScene, Geometry, MeshGeometry};
 use problems::commands::Failure;
 use std::sync::Arc;
 
-/// Gauss points and weights on [−1, 1], exact to degree three.
-pub const TWO_POINTS: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
 /// Gauss points and weights on [−1, 1], exact to degree five.
-pub const THREE_POINTS: [(f64, f64); 3] =
+const RULE: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// Shape functions, their gradients and the weight at one point of a brick.
@@ -32,13 +30,13 @@ fn shape_functions(xi: [f64; 3]) -> ([f64; 8], [[f64; 3]; 8]) {
     (values, gradients)
 }
 
-/// The samples of a brick of a mesh for a rule along each axis.
-pub fn samples(mesh: &Mesh, brick: usize, rule: &[(f64, f64)]) -> Vec<Sample> {
+/// The samples of a brick of a mesh.
+pub fn samples(mesh: &Mesh, brick: usize) -> Vec<Sample> {
     let nodes: [[f64; 3]; 8] = std::array::from_fn(|v| mesh.nodes()[mesh.cell(brick).nodes[v] as usize]);
-    let mut samples = Vec::with_capacity(rule.len().pow(3));
-    for &(first, u) in rule {
-        for &(second, v) in rule {
-            for &(third, w) in rule {
+    let mut samples = Vec::with_capacity(RULE.len().pow(3));
+    for (first, u) in RULE {
+        for (second, v) in RULE {
+            for (third, w) in RULE {
                 let (values, gradients) = shape_functions([first, second, third]);
                 let point = GaussPoint::new(&nodes, &gradients, u * v * w);
                 let x = std::array::from_fn(|axis| nodes.iter().zip(values).map(|(node, n)| n * node[axis]).sum());
@@ -59,22 +57,18 @@ pub fn body(mesh: Mesh, material: Material) -> Result<Body, SceneError> {
     Body::new(&BodyScene::new("block", geometry, material), mesh, &[], 1)
 }
 
-/// Number of free dofs and the nodal displacements under a body force, which a rule integrates: the free part of
+/// Number of free dofs and the nodal displacements under a body force: the free part of
 /// K u = f − K u_D, and the given displacements u_D on the boundary.
 ///
 /// # Errors
 /// [`Failure::Computation`] when the stiffness matrix cannot be factored.
-pub fn solution(
-    body: &Body,
-    rule: &[(f64, f64)],
-    (force, given): (Field<'_>, Field<'_>),
-) -> Result<(usize, Vec<f64>), Failure> {
+pub fn solution(body: &Body, (force, given): (Field<'_>, Field<'_>)) -> Result<(usize, Vec<f64>), Failure> {
     let (mesh, whole) = (&*body.mesh, body.whole());
     let mut values = whole.assemble(&body.solid, mesh.nodes(), |material| *material);
     let size = whole.dof_count();
     let mut right = vec![0.0; size];
     for (brick, cell) in mesh.cells().enumerate() {
-        for sample in samples(mesh, brick, rule) {
+        for sample in samples(mesh, brick) {
             for (component, force) in force(sample.x).into_iter().enumerate() {
                 for (&node, value) in cell.nodes.iter().zip(&sample.values) {
                     right[3 * node as usize + component] += sample.point.volume * value * force;

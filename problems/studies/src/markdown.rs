@@ -21,7 +21,3 @@ pub fn or_dash<T>(value: Option<T>, show: impl Fn(T) -> String) -> String {
 pub fn seconds(seconds: f64) -> String {
     if seconds < 0.1 { format!("{seconds:.4}") } else { format!("{seconds:.2}") }
 }
-
-pub fn yes_or_no(value: bool) -> String {
-    if value { "yes" } else { "no" }.into()
-}

@@ -1,44 +1,49 @@
-//! Θ on a mesh by a contact solver.
+//! Θ = Σσ⁴ on a mesh by a contact solver.
 
-use crate::accuracy::extent::case;
-use crate::scaling::{SceneName, Variant};
+use crate::scaling::{Case, SceneName, Variant};
 use contact::contact_shape::ContactShape;
 use contact::cost::{Measure, NodeWeight, PressureMeasure};
 use contact::equilibrium::ContactProblem;
-use contact::scene::Scene;
+use nonsmooth::Vector;
+use nonsmooth::verify::seeded_direction;
 use problems::commands::{ContactObjective, Failure};
+use scene_file::default_subdomains;
 use std::sync::Arc;
 
 pub const EXPONENT: f64 = 4.0;
 
-/// All contact solvers and preconditioners, with their names in tables and pictures.
-pub const METHODS: [(&str, Variant); 6] = [
-    ("descent, Dirichlet", Variant::Dirichlet),
-    ("descent, lumped", Variant::Lumped),
-    ("descent, none", Variant::None),
-    ("Newton–GMRES", Variant::Gmres),
-    ("augmented Lagrangian", Variant::AugmentedLagrangian),
-    ("direct condensation", Variant::Direct),
-];
-
-/// Θ by the default solver, descent on total FETI, on N bricks per edge.
-///
-/// # Errors
-/// [`Failure::Input`] from the scene.
-pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
-    objective_by(Variant::Dirichlet, scene.scene(case(mesh))?, measure)
+/// N bricks per edge in the subdomains that a scene file has by default.
+pub fn case(mesh: usize) -> Case {
+    Case { mesh, subdomains: default_subdomains(mesh) }
 }
 
-/// Θ of any scene by any solver.
+/// The measure Σσ^p.
+pub fn norm(exponent: f64) -> PressureMeasure {
+    PressureMeasure::Norm { exponent, weight: NodeWeight::Nodes }
+}
+
+/// A measure of a scene with N bricks per edge by a solver.
 ///
 /// # Errors
 /// [`Failure`] from the scene or the preparation of the solver.
-pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
-    let solver = variant.solver(&Arc::new(ContactProblem::new(scene)?)).map_err(Failure::computation)?;
+pub fn objective(
+    variant: Variant,
+    scene: SceneName,
+    mesh: usize,
+    measure: PressureMeasure,
+) -> Result<ContactObjective, Failure> {
+    let problem = Arc::new(ContactProblem::new(scene.scene(case(mesh))?)?);
+    let solver = variant.solver(&problem, 1).map_err(Failure::computation)?;
     Ok(ContactObjective::new(ContactShape::by(solver), Measure::Pressure(measure), &[])?)
 }
 
-/// The measure Σσ⁴.
-pub fn norm() -> PressureMeasure {
-    PressureMeasure::Norm { exponent: EXPONENT, weight: NodeWeight::Nodes }
+/// Σσ⁴ by the default solver, descent on total FETI.
+pub fn objective_of(scene: SceneName, mesh: usize) -> Result<ContactObjective, Failure> {
+    objective(Variant::Dirichlet, scene, mesh, norm(EXPONENT))
+}
+
+/// Controls of the start, each lowered at random by 1 to 3 %, so that the shape has no symmetry.
+pub fn perturbed(objective: &ContactObjective) -> Vector {
+    let start = objective.solver().start();
+    start.zip_map(&seeded_direction(start.len(), 5), |height, change| height * (0.98 + 0.01 * change))
 }

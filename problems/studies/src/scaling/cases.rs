@@ -1,4 +1,4 @@
-//! Which meshes are measured, with which solvers.
+//! What can be measured: scenes, meshes, solvers.
 
 use clap::ValueEnum;
 use contact::contact_shape::Solver;
@@ -48,25 +48,12 @@ pub enum Variant {
     Direct,
 }
 
-/// How much is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extent {
-    /// s = 2, 3 only.
-    Quick,
-    /// s = 2 … 5.
-    Usual,
-    /// s = 2 … 7, direct condensation up to 35 bricks; s = 9 and 12 with the Dirichlet preconditioner alone.
-    Full,
-}
-
 /// H/h of the study of growing s.
 pub const RATIO: usize = 7;
-/// s of the study of growing H/h.
-pub const FIXED_SUBDOMAINS: usize = 3;
+/// s of the study of growing H/h, and the most for which the unpreconditioned solver is measured.
+const FIXED_SUBDOMAINS: usize = 3;
 /// Most subdomains per edge for which more than one solver is measured.
 const COMPARED: usize = 7;
-/// Most subdomains per edge for which the unpreconditioned solver is measured.
-const UNPRECONDITIONED: usize = 3;
 
 impl Case {
     /// N bricks, S subdomains per edge.
@@ -74,19 +61,24 @@ impl Case {
     /// # Errors
     /// Returns a message when S does not divide N or N is out of range.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let allowed = || {
-            format!(
-                "unknown case {text:?}; allowed: N/S with 1 to 400 bricks N per edge and a divisor S of N, such as 6/2, \
-                 12/2, 21/3, 35/5"
-            )
-        };
-        let (mesh, subdomains) = text.split_once('/').ok_or_else(allowed)?;
-        match (mesh.parse::<usize>(), subdomains.parse::<usize>()) {
-            (Ok(mesh @ 1..=400), Ok(subdomains @ 1..)) if mesh.is_multiple_of(subdomains) => {
+        let numbers = text.split_once('/').map(|(mesh, subdomains)| (mesh.parse(), subdomains.parse()));
+        match numbers {
+            Some((Ok(mesh @ 1..=400), Ok(subdomains @ 1..))) if usize::is_multiple_of(mesh, subdomains) => {
                 Ok(Self { mesh, subdomains })
             }
-            _ => Err(allowed()),
+            _ => Err(format!(
+                "unknown case {text:?}; allowed: N/S with 1 to 400 bricks N per edge and a divisor S of N, such as 6/2, \
+                 12/2, 21/3, 35/5"
+            )),
         }
+    }
+
+    /// The cases of the study: s = 2 at H/h = 6, growing H/h at s = 3, growing s at H/h = 7.
+    pub fn all(full: bool) -> Vec<Self> {
+        let growing: &[usize] = if full { &[2, 3, 4, 5, 6, 7, 9, 12] } else { &[2, 3, 4, 5] };
+        let of = |ratio, subdomains| Self { mesh: ratio * subdomains, subdomains };
+        let ratios = [3, 5, 9].map(|ratio| of(ratio, FIXED_SUBDOMAINS));
+        std::iter::once(of(6, 2)).chain(ratios).chain(growing.iter().map(|&s| of(RATIO, s))).collect()
     }
 
     /// H/h, bricks per subdomain and edge.
@@ -94,45 +86,27 @@ impl Case {
         self.mesh / self.subdomains
     }
 
+    /// Dofs of the subdomains of a body.
+    pub fn torn_dofs(&self) -> usize {
+        3 * (self.mesh + self.subdomains).pow(3)
+    }
+
     /// The solvers measured on this case.
-    pub fn variants(&self, extent: Extent) -> Vec<Variant> {
-        let largest_direct = match extent {
-            Extent::Quick => 14,
-            Extent::Usual => 21,
-            Extent::Full => 35,
+    pub fn variants(&self, full: bool) -> Vec<Variant> {
+        let is_compared = |variant: &Variant| match variant {
+            Variant::Dirichlet => true,
+            Variant::None => self.subdomains <= FIXED_SUBDOMAINS,
+            Variant::Direct => self.mesh <= if full { 35 } else { 21 },
+            Variant::Lumped | Variant::AugmentedLagrangian => self.subdomains <= COMPARED,
+            Variant::Gmres => false,
         };
-        if self.subdomains > COMPARED {
-            return vec![Variant::Dirichlet];
-        }
-        let mut variants = vec![Variant::Dirichlet, Variant::Lumped];
-        if self.subdomains <= UNPRECONDITIONED {
-            variants.push(Variant::None);
-        }
-        variants.push(Variant::AugmentedLagrangian);
-        if self.mesh <= largest_direct {
-            variants.push(Variant::Direct);
-        }
-        variants
+        Variant::value_variants().iter().copied().filter(is_compared).collect()
     }
 }
 
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.mesh, self.subdomains)
-    }
-}
-
-impl Extent {
-    /// The cases: s = 2 at H/h = 6, growing s at H/h = 7, growing H/h at s = 3.
-    pub fn cases(self) -> Vec<Case> {
-        let (growing, ratios): (&[usize], &[usize]) = match self {
-            Self::Quick => (&[2, 3], &[3]),
-            Self::Usual => (&[2, 3, 4, 5], &[3, 5, 9]),
-            Self::Full => (&[2, 3, 4, 5, 6, 7, 9, 12], &[3, 5, 9]),
-        };
-        let of = |ratio, subdomains| Case { mesh: ratio * subdomains, subdomains };
-        let growing_ratio = ratios.iter().map(|&ratio| of(ratio, FIXED_SUBDOMAINS));
-        std::iter::once(of(6, 2)).chain(growing_ratio).chain(growing.iter().map(|&s| of(RATIO, s))).collect()
     }
 }
 
@@ -148,19 +122,11 @@ impl SceneName {
 }
 
 impl Variant {
-    /// The solver of a problem.
+    /// The solver of a problem, with clusters of about so many subdomains per axis.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<Solver, ContactError> {
-        self.clustered_solver(problem, 1)
-    }
-
-    /// The solver of a problem with clusters of about so many subdomains per axis.
-    ///
-    /// # Errors
-    /// As [`Variant::solver`], and [`ContactError::Clusters`].
-    pub fn clustered_solver(self, problem: &Arc<ContactProblem>, clusters: usize) -> Result<Solver, ContactError> {
+    /// [`ContactError::Factorization`] when a symbolic analysis fails, and [`ContactError::Clusters`].
+    pub fn solver(self, problem: &Arc<ContactProblem>, clusters: usize) -> Result<Solver, ContactError> {
         let problem = Arc::clone(problem);
         let Some(preconditioner) = self.preconditioner() else {
             return DirectSolver::new(problem).map(Solver::from);
@@ -194,25 +160,4 @@ pub fn cluster_count(problem: &ContactProblem, edge: usize) -> usize {
 /// The name of a value of an enumeration on the command line.
 pub fn option_name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cases_are_parsed_or_refused_with_what_is_allowed() {
-        assert_eq!(Case::parse("35/5"), Ok(Case { mesh: 35, subdomains: 5 }));
-        for bad in ["35", "35/", "/5", "35/4", "0/1", "6/0", "401/1", "-6/2", "a/b", "6/2/1"] {
-            let message = Case::parse(bad).expect_err(bad);
-            assert!(message.contains(bad) && message.contains("divisor"), "{message}");
-        }
-    }
-
-    #[test]
-    fn the_usual_study_holds_the_paper_size_once() {
-        let cases = Extent::Usual.cases();
-        assert_eq!(cases.iter().filter(|case| case.to_string() == "35/5").count(), 1);
-        assert_eq!(cases.iter().filter(|case| case.subdomains == 3).map(Case::ratio).max(), Some(9));
-    }
 }

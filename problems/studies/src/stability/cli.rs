@@ -1,41 +1,28 @@
 //! The command line of the study.
 
-use crate::stability::optimizer_page::{self, Listed, Part};
-use crate::stability::record::{CaseOutcome, Record, StabilityReport};
-use crate::stability::{matrix, random, table};
+use crate::stability::case::{self, CaseOutcome, Record};
+use crate::stability::{all, random};
 use clap::Parser;
-use problems::commands::{Failure, Folder, arguments, finish, json, notice};
+use problems::commands::{Failure, Folder, arguments, finish, notice};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What the solvers and the optimizer do with stiff and extreme cases.
+/// What the contact solvers do with stiff and extreme cases.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "stability", version)]
-pub struct StabilityArguments {
-    /// The fast subset only.
-    #[arg(long)]
-    pub quick: bool,
-    /// Only cases whose group or name contains this text; with `--optimizer units`, only runs whose name does.
+struct Options {
+    /// Only cases whose group or name contains this text.
     #[arg(long, value_name = "TEXT")]
-    pub only: Option<String>,
+    only: Option<String>,
     /// Random scenes instead of the cases: so many of them.
-    #[arg(long, value_name = "COUNT", conflicts_with_all = ["quick", "only"], value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub random: Option<u32>,
+    #[arg(long, value_name = "COUNT", conflicts_with = "only", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    random: Option<u32>,
     /// Seed of the random scenes.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "random")]
-    pub seed: u64,
+    seed: u64,
     /// Folder for the files of random scenes that fell short.
     #[arg(long, value_name = "DIR", requires = "random")]
-    pub out: Option<PathBuf>,
-    /// What the optimizer says at the end of its runs, held against what is true; minutes.
-    #[arg(long, value_name = "PART", num_args = 0..=1, default_missing_value = "all", conflicts_with = "quick")]
-    pub optimizer: Option<Part>,
-    /// With `--optimizer units`: the runs one by one, each with its name, value, minimum and end.
-    #[arg(long, value_name = "RUNS", requires = "optimizer")]
-    pub list: Option<Listed>,
-    /// Print one JSON object on stdout.
-    #[arg(long)]
-    pub json: bool,
+    out: Option<PathBuf>,
 }
 
 /// Runs the binary with the arguments of the process and returns its exit status.
@@ -43,18 +30,25 @@ pub fn run() -> ExitCode {
     finish(execute(&arguments()), None)
 }
 
-/// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
-fn execute(arguments: &StabilityArguments) -> Result<String, Failure> {
-    if let Some(part) = arguments.optimizer {
-        return optimizer_page::page(part, arguments.only.as_deref(), arguments.list, arguments.json);
+/// Runs what the arguments select; the text belongs on stdout, also when cases are broken.
+fn execute(options: &Options) -> Result<String, Failure> {
+    if let Some(count) = options.random {
+        return at_random(options, count as usize);
     }
-    if let Some(count) = arguments.random {
-        return at_random(arguments, count as usize);
+    let wanted = |text: &str| options.only.as_deref().is_none_or(|only| text.contains(only));
+    let cases = all().into_iter().filter(|case| wanted(case.group) || wanted(&case.name));
+    let run = |case: case::Case| {
+        let record = case.run();
+        notice(&record.progress());
+        record
+    };
+    let records: Vec<Record> = cases.map(run).collect();
+    if records.is_empty() {
+        return Err(Failure::Input(format!("--only {}: no case", options.only.as_deref().unwrap_or_default())));
     }
-    let report = StabilityReport::new(select(arguments)?);
-    let text = if arguments.json { json(&report)? } else { table::markdown(&report) };
+    let text = case::markdown(&records);
     let broken: Vec<&str> =
-        report.records.iter().filter(|r| r.outcome == CaseOutcome::Broken).map(|r| &*r.name).collect();
+        records.iter().filter(|record| record.outcome == CaseOutcome::Broken).map(|record| &*record.name).collect();
     if broken.is_empty() {
         return Ok(text);
     }
@@ -62,29 +56,13 @@ fn execute(arguments: &StabilityArguments) -> Result<String, Failure> {
 }
 
 /// The study of random scenes.
-fn at_random(arguments: &StabilityArguments, count: usize) -> Result<String, Failure> {
-    let report = random::run(arguments.seed, count);
-    if let Some(path) = &arguments.out {
+fn at_random(options: &Options, count: usize) -> Result<String, Failure> {
+    let report = random::run(options.seed, count);
+    if let Some(path) = &options.out {
         let folder = Folder::create(path, 1 << 20, false)?;
-        for short in report.short() {
+        for short in &report.short {
             folder.write(&format!("{:05}.toml", short.index), format!("# {}\n{}", short.reason, short.text))?;
         }
     }
-    if arguments.json { json(&report) } else { Ok(report.markdown()) }
-}
-
-fn select(arguments: &StabilityArguments) -> Result<Vec<Record>, Failure> {
-    let wanted = |text: &str| arguments.only.as_deref().is_none_or(|only| text.contains(only));
-    let mut records = Vec::new();
-    for case in matrix::all() {
-        if (wanted(case.group) || wanted(&case.name)) && (case.quick || !arguments.quick) {
-            let record = case.run();
-            notice(&table::progress(&record));
-            records.push(record);
-        }
-    }
-    if records.is_empty() {
-        return Err(Failure::Input(format!("--only {}: no case", arguments.only.as_deref().unwrap_or_default())));
-    }
-    Ok(records)
+    Ok(report.markdown())
 }

@@ -1,6 +1,6 @@
 //! The scenes that cases are made of. Units: N, mm, MPa.
 
-use contact::body::elasticity::Material;
+use contact::body::elasticity::{Formulation, Material};
 use contact::body::mesh::BlockFace;
 use contact::error::SceneError;
 use contact::scene::{
@@ -79,11 +79,14 @@ pub fn footed(gap: f64) -> Result<Scene, SceneError> {
 }
 
 /// A scene with other materials: (E, ν) of the lower and the upper body.
-pub fn with_materials(scene: Result<Scene, SceneError>, materials: &[(f64, f64)]) -> Result<Scene, SceneError> {
+pub fn with_materials(
+    scene: Result<Scene, SceneError>,
+    materials: [(f64, f64); 2],
+    formulation: Formulation,
+) -> Result<Scene, SceneError> {
     let mut scene = scene?;
     for (body, (young, poisson)) in scene.bodies.iter_mut().zip(materials) {
-        let formulation = body.material.formulation();
-        body.material = Material::new(*young, *poisson)?.with_formulation(formulation);
+        body.material = Material::new(young, poisson)?.with_formulation(formulation);
     }
     Ok(scene)
 }

@@ -9,32 +9,26 @@ fn rows(value: &Value) -> &[Value] {
 
 #[test]
 fn the_smallest_study_holds_what_it_promises() {
-    let scratch = kit::scratch();
-    let folder = scratch.path();
-    let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--smoke", "--json", "--out", kit::text(folder)]);
+    let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--smoke", "--json"]);
     for taylor in rows(&report["subgradient"]["taylor"]) {
         assert!((taylor["test"]["fitted_slope"].as_f64().unwrap() - 2.0).abs() < 0.1, "{taylor}");
     }
     let kinks = rows(&report["subgradient"]["kinks"]);
-    assert_eq!(kinks.len(), 5);
+    assert_eq!(kinks.len(), 2);
     for kink in kinks {
         assert_eq!(kink["bracketed"], true, "{kink}");
         assert!(kink["weakly_active"].as_u64().unwrap() >= 1, "{kink}");
     }
-    for course in rows(&report["optimization"][0]["courses"]) {
-        assert!(course["value"].as_f64().unwrap() < report["optimization"][0]["start"].as_f64().unwrap());
-    }
-    for name in ["report.json", "report.md", "accuracy_mesh_hertz.svg", "accuracy_taylor.svg"] {
-        let text = std::fs::read_to_string(folder.join(name)).unwrap();
-        assert!(text.len() > 500 && !text.contains("NaN"), "{name}");
+    for course in rows(&report["optimization"]["courses"]) {
+        assert!(course["value"].as_f64().unwrap() < report["optimization"]["start"].as_f64().unwrap());
     }
 }
 
-/// The quick study's kinks: four of each scene, and the toy's.
+/// The quick study's kinks: four of each scene.
 #[test]
 fn one_sided_slopes_at_kinks_bracket_the_product_with_the_returned_element() {
     let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--part", "subgradient", "--json"]);
     let kinks = rows(&report["subgradient"]["kinks"]);
-    assert_eq!(kinks.len(), 11);
+    assert_eq!(kinks.len(), 8);
     assert!(kinks.iter().all(|kink| kink["bracketed"] == true), "{kinks:?}");
 }

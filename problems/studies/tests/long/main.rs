@@ -7,6 +7,8 @@ mod composite;
 mod examples;
 mod headline;
 mod meshes;
+#[path = "../optimizer/mod.rs"]
+mod optimizer;
 mod pins;
 mod stability;
 mod tutorial;

@@ -12,7 +12,7 @@ fn rows(value: &Value) -> &[Value] {
 #[test]
 fn no_solver_reports_a_bound_below_its_error() {
     let report = kit::json(ACCURACY, &["--smoke", "--part", "algebra", "--json"]);
-    assert!(rows(&report["optimization"]).is_empty(), "a part that was not asked for");
+    assert!(report["optimization"].is_null(), "a part that was not asked for");
     for study in rows(&report["algebra"]) {
         assert_eq!(study["violations"], 0, "a bound below the true error: {study}");
         // Six solvers, three tolerances; the tightest of each is accurate.

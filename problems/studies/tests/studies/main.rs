@@ -4,6 +4,8 @@
 
 mod accuracy;
 mod manufactured;
+#[path = "../optimizer/mod.rs"]
+mod optimizer;
 mod pages_run;
 mod scaling;
 mod stability;

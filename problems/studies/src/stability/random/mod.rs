@@ -9,10 +9,9 @@ use paths::{Examined, Found, MAX_RESIDUAL, PathResult};
 use rayon::prelude::*;
 use scene_file::{Case, SceneFile};
 use scenes::Family;
-use serde::Serialize;
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::time::Instant;
 
 /// Relative difference of Θ up to which two paths agree.
 const MAX_DIFFERENCE: f64 = 1e-6;
@@ -23,92 +22,85 @@ const MAX_COST: f64 = 3.0;
 /// Of so many scenes, one has its cone programs solved although the default has found a state.
 const CONE_EVERY: usize = 10;
 
-/// Numbers of scenes by result.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Counts {
-    pub scenes: usize,
+/// What was found out about a scene.
+#[derive(Debug, Default)]
+struct Findings {
+    frictionless: bool,
+    /// Whether a path panicked.
+    panicked: bool,
+    /// Whether rigid statics refuse it.
+    no_equilibrium: bool,
     /// States that any path returned.
-    pub states: usize,
+    states: usize,
     /// States whose residual, computed anew, is above 1e-8.
-    pub wrong: usize,
-    /// Scenes on which a path panicked.
-    pub panics: usize,
-    /// Scenes that any path solves.
-    pub solvable: usize,
-    /// Scenes that the default solves.
-    pub solved: usize,
-    /// Scenes without friction that any path solves.
-    pub frictionless_solvable: usize,
-    /// Scenes without friction that the default solves.
-    pub frictionless_solved: usize,
-    /// Scenes on which the default cost more than allowed.
-    pub beyond_cost: usize,
-    /// Scenes on which two paths differ without a warning that the state may not be unique.
-    pub disagreeing: usize,
-    /// Scenes that rigid statics refuse.
-    pub no_equilibrium: usize,
+    wrong: usize,
+    /// Whether the default solves it.
+    solved: bool,
+    /// Whether the default cost more than allowed.
+    beyond_cost: bool,
+    /// Whether two paths differ without a warning that the state may not be unique.
+    disagreeing: bool,
+    /// What fell short.
+    short: Vec<String>,
 }
 
-/// The report of a study.
-#[derive(Debug, Serialize)]
-pub struct RandomReport {
-    /// Counts of all scenes.
-    #[serde(flatten)]
-    pub counts: Counts,
-    seconds: f64,
-    families: Vec<(String, Counts)>,
-    /// Everything that fell short: name, reason, scene file.
-    short: Vec<Short>,
+/// Numbers of scenes by result.
+pub type Counts = BTreeMap<&'static str, usize>;
+
+/// What is counted of a scene.
+type Count = fn(&Findings) -> usize;
+/// The columns of the table.
+const COUNTS: [(&str, Count); 11] = [
+    ("scenes", |_| 1),
+    ("no statics", |scene| scene.no_equilibrium.into()),
+    ("solvable", |scene| usize::from(scene.states > 0)),
+    ("solved", |scene| scene.solved.into()),
+    ("solvable without friction", |scene| usize::from(scene.frictionless && scene.states > 0)),
+    ("solved without friction", |scene| usize::from(scene.frictionless && scene.solved)),
+    ("states", |scene| scene.states),
+    ("wrong", |scene| scene.wrong),
+    ("panics", |scene| scene.panicked.into()),
+    ("beyond cost", |scene| scene.beyond_cost.into()),
+    ("disagreeing", |scene| scene.disagreeing.into()),
+];
+
+fn counts<'f>(scenes: impl Iterator<Item = &'f Findings>) -> Counts {
+    let scenes: Vec<&Findings> = scenes.collect();
+    COUNTS.iter().map(|(name, count)| (*name, scenes.iter().map(|scene| count(scene)).sum())).collect()
 }
 
 /// A scene that fell short.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug)]
 pub struct Short {
     /// Number of the scene in the sequence of its seed.
     pub index: usize,
     /// Message about the shortcoming.
     pub reason: String,
     /// Text of the scene file.
-    #[serde(skip)]
     pub text: String,
 }
 
-impl RandomReport {
-    /// Scenes with a shortcoming, each with its reason.
-    pub fn short(&self) -> &[Short] {
-        &self.short
-    }
-
-    /// The table of docs/stability.md.
-    pub fn markdown(&self) -> String {
-        let all = [("all".to_owned(), self.counts.clone())];
-        let rows = self.families.iter().chain(&all).map(|(name, counts)| {
-            let Counts { scenes, states, wrong, panics, solvable, solved, beyond_cost, disagreeing, .. } = counts;
-            let (frictionless, of) = (counts.frictionless_solved, counts.frictionless_solvable);
-            vec![
-                name.clone(),
-                scenes.to_string(),
-                counts.no_equilibrium.to_string(),
-                format!("{solved} of {solvable}"),
-                format!("{frictionless} of {of}"),
-                states.to_string(),
-                wrong.to_string(),
-                panics.to_string(),
-                beyond_cost.to_string(),
-                disagreeing.to_string(),
-            ]
-        });
-        let head = "family | scenes | no statics | solved of solvable | without friction | states | wrong | panics | beyond cost | \
-                    disagreeing";
-        markdown::table(head, rows)
-    }
+/// The report of a study.
+#[derive(Debug)]
+pub struct RandomReport {
+    /// Counts of all scenes.
+    pub counts: Counts,
+    families: Vec<(Family, Counts)>,
+    /// Everything that fell short.
+    pub short: Vec<Short>,
 }
 
-struct Examination {
-    family: Family,
-    frictionless: bool,
-    outcome: Result<Paths, String>,
-    text: String,
+impl RandomReport {
+    /// The table of docs/stability.md.
+    pub fn markdown(&self) -> String {
+        let all = [("all".to_owned(), &self.counts)];
+        let families = self.families.iter().map(|(family, counts)| (format!("{family:?}"), counts));
+        let rows = families.chain(all).map(|(name, counts)| {
+            let cells = COUNTS.iter().map(|(column, _)| counts[column].to_string());
+            std::iter::once(name).chain(cells).collect()
+        });
+        markdown::table(&format!("family | {}", COUNTS.map(|(name, _)| name).join(" | ")), rows)
+    }
 }
 
 /// The paths of one scene.
@@ -123,23 +115,37 @@ struct Paths {
 
 /// Examines scenes 0 … count − 1 of a seed on all threads; the counts do not depend on their number.
 pub fn run(seed: u64, count: usize) -> RandomReport {
-    let clock = Instant::now();
-    let done: Vec<(usize, Examination)> =
-        (0..count).into_par_iter().map(|index| (index, examine(seed, index))).collect();
-    collect(&done, clock.elapsed().as_secs_f64())
+    let done: Vec<(Family, Findings, String)> = (0..count).into_par_iter().map(|index| examine(seed, index)).collect();
+    let of = |family| counts(done.iter().filter(|(of, ..)| *of == family).map(|(_, findings, _)| findings));
+    let short = done.iter().enumerate().flat_map(|(index, (_, findings, text))| {
+        findings.short.iter().map(move |reason| Short { index, reason: reason.clone(), text: text.clone() })
+    });
+    RandomReport {
+        counts: counts(done.iter().map(|(_, findings, _)| findings)),
+        families: Family::ALL.map(|family| (family, of(family))).into(),
+        short: short.collect(),
+    }
 }
 
-fn examine(seed: u64, index: usize) -> Examination {
+fn examine(seed: u64, index: usize) -> (Family, Findings, String) {
     let (family, text) = scenes::scene(seed, index);
     let case = SceneFile::parse(&text, "random").and_then(|file| Case::new(&file, Path::new(".")));
-    let (frictionless, outcome) = match case {
-        Err(error) => (false, Err(format!("no scene: {error}"))),
+    let mut findings = Findings::default();
+    match case {
+        Err(error) => findings.short.push(format!("no scene: {error}")),
         Ok(case) => {
-            let outcome = catch_unwind(AssertUnwindSafe(|| paths_of(&case, index)));
-            (!case.scene.has_friction(), outcome.unwrap_or_else(|_| Err("panic".into())))
+            findings.frictionless = !case.scene.has_friction();
+            match catch_unwind(AssertUnwindSafe(|| paths_of(&case, index))) {
+                Ok(Ok(paths)) => findings.judge(&paths),
+                Ok(Err(reason)) => findings.short.push(reason),
+                Err(_) => {
+                    findings.panicked = true;
+                    findings.short.push("panic".into());
+                }
+            }
         }
-    };
-    Examination { family, frictionless, outcome, text }
+    }
+    (family, findings, text)
 }
 
 fn paths_of(case: &Case, index: usize) -> Result<Paths, String> {
@@ -173,77 +179,33 @@ fn difference(a: &Found, b: &Found, smallest: f64) -> f64 {
     (a.objective - b.objective).abs() / a.objective.abs().max(b.objective.abs()).max(smallest).max(f64::MIN_POSITIVE)
 }
 
-fn collect(done: &[(usize, Examination)], seconds: f64) -> RandomReport {
-    let mut short = Vec::new();
-    let mut counts = Counts::default();
-    let mut families = Family::ALL.map(|family| (format!("{family:?}"), Counts::default()));
-    for (index, examination) in done {
-        let mut add = |reason: String| short.push(Short { index: *index, reason, text: examination.text.clone() });
-        let one = count(examination, &mut add);
-        let position = Family::ALL.iter().position(|family| *family == examination.family).unwrap_or(0);
-        counts.add(&one);
-        families[position].1.add(&one);
-    }
-    RandomReport { counts, seconds, families: families.into(), short }
-}
-
-/// The counts of one scene; `short` hears what fell short.
-fn count(examination: &Examination, short: &mut impl FnMut(String)) -> Counts {
-    let mut counts = Counts { scenes: 1, ..Counts::default() };
-    let paths = match &examination.outcome {
-        Ok(paths) => paths,
-        Err(reason) => {
-            counts.panics = usize::from(reason == "panic");
-            short(reason.clone());
-            return counts;
+impl Findings {
+    /// Compares the paths of the scene.
+    fn judge(&mut self, paths: &Paths) {
+        let all = || std::iter::once(&paths.default).chain(&paths.others).flatten();
+        self.no_equilibrium = !paths.has_statics;
+        (self.states, self.solved) = (all().count(), paths.default.is_ok());
+        for found in all().filter(|found| found.residual.is_nan() || found.residual > MAX_RESIDUAL) {
+            self.wrong += 1;
+            self.short.push(format!("wrong: residual {:.1e} by {}", found.residual, found.path));
         }
-    };
-    let all = || std::iter::once(&paths.default).chain(&paths.others).flatten();
-    counts.no_equilibrium = usize::from(!paths.has_statics);
-    counts.states = all().count();
-    for found in all().filter(|found| found.residual.is_nan() || found.residual > MAX_RESIDUAL) {
-        counts.wrong += 1;
-        short(format!("wrong: residual {:.1e} by {}", found.residual, found.path));
-    }
-    let (solvable, solved) = (all().next().is_some(), paths.default.is_ok());
-    (counts.solvable, counts.solved) = (usize::from(solvable), usize::from(solved));
-    if examination.frictionless {
-        (counts.frictionless_solvable, counts.frictionless_solved) = (counts.solvable, counts.solved);
-    }
-    match &paths.default {
-        Err(reason) if solvable => short(format!("not solved: {reason}")),
-        Err(reason) if paths.has_statics => short(format!("solved by no path: {reason}")),
-        Err(_) => {}
-        Ok(found) => {
-            if found.operations > paths.cost_bound {
-                counts.beyond_cost = 1;
-                short(format!("cost {:.1e}, allowed {:.1e}", found.operations, paths.cost_bound));
-            }
-            let allowed = MAX_DIFFERENCE.max(MAX_ROUNDINGS * paths.rounding);
-            let warned = all().any(|found| found.may_not_be_unique);
-            let largest =
-                paths.others.iter().flatten().map(|other| difference(found, other, paths.smallest)).fold(0.0, f64::max);
-            if largest > allowed && !warned {
-                counts.disagreeing = 1;
-                short(format!("paths differ by {largest:.1e}, allowed {allowed:.1e}"));
+        match &paths.default {
+            Err(reason) if self.states > 0 => self.short.push(format!("not solved: {reason}")),
+            Err(reason) if paths.has_statics => self.short.push(format!("solved by no path: {reason}")),
+            Err(_) => {}
+            Ok(found) => {
+                self.beyond_cost = found.operations > paths.cost_bound;
+                if self.beyond_cost {
+                    self.short.push(format!("cost {:.1e}, allowed {:.1e}", found.operations, paths.cost_bound));
+                }
+                let allowed = MAX_DIFFERENCE.max(MAX_ROUNDINGS * paths.rounding);
+                let differences = paths.others.iter().flatten().map(|other| difference(found, other, paths.smallest));
+                let largest = differences.fold(0.0, f64::max);
+                self.disagreeing = largest > allowed && !all().any(|found| found.may_not_be_unique);
+                if self.disagreeing {
+                    self.short.push(format!("paths differ by {largest:.1e}, allowed {allowed:.1e}"));
+                }
             }
         }
-    }
-    counts
-}
-
-impl Counts {
-    fn add(&mut self, other: &Self) {
-        self.scenes += other.scenes;
-        self.states += other.states;
-        self.wrong += other.wrong;
-        self.panics += other.panics;
-        self.solvable += other.solvable;
-        self.solved += other.solved;
-        self.frictionless_solvable += other.frictionless_solvable;
-        self.frictionless_solved += other.frictionless_solved;
-        self.beyond_cost += other.beyond_cost;
-        self.disagreeing += other.disagreeing;
-        self.no_equilibrium += other.no_equilibrium;
     }
 }
