@@ -64,7 +64,7 @@ impl RunOutcome {
     /// Whether the solution is a stationary point and confirmed.
     #[getter]
     fn confirmed(&self) -> bool {
-        self.report.termination.is_confirmed() && self.report.is_feasible()
+        self.report.is_proved()
     }
 
     /// Why the run ended, with numbers.

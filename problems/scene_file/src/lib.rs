@@ -12,6 +12,7 @@ mod by_name;
 mod case;
 mod check;
 mod contact_section;
+mod continuation;
 mod draft;
 mod either;
 mod general;
@@ -22,6 +23,7 @@ mod load_case;
 mod mesh_check;
 mod mesh_file;
 mod objective;
+pub mod optimization;
 mod parts;
 mod print;
 mod region;
@@ -43,6 +45,7 @@ pub use bodies::{
 };
 pub use case::Case;
 pub use contact_section::{ContactSection, FrictionSection};
+pub use continuation::ContinuationMesh;
 pub use draft::draft;
 pub use either::Either;
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
@@ -66,7 +69,8 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Names of copies of the files of a scene, beside a copy of its own.
-pub const FILES: [&str; 4] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv", "body.msh"];
+pub const FILES: [&str; 5] =
+    ["counter_surface.csv", "start.csv", "wanted_pressure.csv", "continuation.msh", "body.msh"];
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -181,7 +185,7 @@ impl SceneFile {
 
     /// The files that the scene names, each with the name of its copy beside a copy of the scene.
     pub fn files_mut(&mut self) -> Vec<(String, &mut String)> {
-        let [counter, start, wanted, mesh] = FILES.map(str::to_owned);
+        let [counter, start, wanted, continuation, mesh] = FILES.map(str::to_owned);
         let mut files = Vec::new();
         if let Some(CounterSection::Grid { file, .. }) = &mut self.counter_surface {
             files.push((counter.clone(), file));
@@ -192,6 +196,8 @@ impl SceneFile {
         if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
             files.push((wanted, file));
         }
+        let meshes = self.optimizer.continuation.iter_mut().enumerate();
+        files.extend(meshes.filter_map(|(index, mesh)| Some((numbered(&continuation, index, ""), mesh.file_mut()?))));
         let Self { body, contact, .. } = self;
         match body {
             Some(Either::One(section)) => files.push((mesh, &mut section.mesh)),
@@ -220,6 +226,16 @@ impl SceneFile {
             }
         }
         files
+    }
+
+    /// The files of all bodies that are meshes.
+    pub(crate) fn mesh_files_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let (one, several) = match &mut self.body {
+            Some(Either::One(body)) => (Some(&mut body.mesh), None),
+            Some(Either::Several(bodies)) => (None, Some(bodies.iter_mut().filter_map(|body| body.mesh.as_mut()))),
+            None => (None, None),
+        };
+        one.into_iter().chain(several.into_iter().flatten())
     }
 
     /// The bodies of a list.

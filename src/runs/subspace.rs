@@ -1,7 +1,7 @@
 //! An objective on an affine subspace: x = origin + D β with the variables β.
 
-use nonsmooth::composite::{Linearized, OuterFunction};
-use nonsmooth::{
+use crate::composite::{Linearized, OuterFunction};
+use crate::{
     Answer, ConstraintKind, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError, Polyhedron, Report,
     Request, Vector,
 };
@@ -104,7 +104,7 @@ impl<O: NonsmoothObjective> NonsmoothObjective for Subspace<O> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, composite::Maximum};
+    use crate::{BundleTrust, BundleTrustConfig, CompositeFunction, composite::Maximum};
 
     /// max(x², 2 y + 3 z) on the line (1, 1, 0) + β (1, −1, 0), with its minimum where x² = 2 y.
     #[test]
