@@ -6,7 +6,7 @@
 //! chosen from reports alone are chosen again in the same way when a run is repeated from its journals.
 //!
 //! ```
-//! use nonsmooth::runs::{Ended, Performed, Stage, run_in_turn, seeded_start};
+//! use nonsmooth::runs::{Ended, Stage, run_in_turn, seeded_start};
 //! use nonsmooth::{BundleTrustConfig, FnObjective, Polyhedron, Vector};
 //! use std::ops::ControlFlow;
 //! use std::sync::Arc;
@@ -27,9 +27,9 @@
 //!     let (objective, set, config) = (Arc::clone(&theta), set.clone(), BundleTrustConfig::default());
 //!     Ok(Some(Stage { label: ended.len(), objective, set, start, directions: None, config }))
 //! };
-//! let perform = |stage: &Stage<_, usize>| {
+//! let perform = |stage: Stage<_, usize>| {
 //!     let report = stage.run(&*stage.objective, &mut |_, _| ControlFlow::Continue(()))?;
-//!     Ok(Performed { report, replayed: 0, is_kept: true, is_last: false })
+//!     Ok(Ended { stage, report, replayed: 0, is_kept: true, is_last: false })
 //! };
 //! run_in_turn::<_, _, Box<dyn std::error::Error>>(&mut ended, next, perform)?;
 //! let best = ended.iter().map(|run| run.report.value).fold(f64::INFINITY, f64::min);
@@ -38,12 +38,12 @@
 //! # }
 //! ```
 
-mod starts;
 mod subspace;
 
-pub use starts::{moved_start, seeded_start};
 pub use subspace::Subspace;
 
+use crate::qp::{QpError, project};
+use crate::verify::seeded_direction;
 use crate::{
     BundleTrust, BundleTrustConfig, IterationRecord, Matrix, NonsmoothObjective, OptimizeError, Polyhedron, Report,
     Termination, Vector,
@@ -72,19 +72,6 @@ pub struct Stage<O, L> {
     pub config: BundleTrustConfig,
 }
 
-/// What performing a stage has led to.
-#[derive(Debug)]
-pub struct Performed {
-    /// The report, with a solution in the space of the objective.
-    pub report: Report,
-    /// Number of evaluations that were answered from a journal.
-    pub replayed: usize,
-    /// Whether its journal, if it has one, holds all evaluations.
-    pub is_kept: bool,
-    /// Whether no other run may begin after this one, whatever its end.
-    pub is_last: bool,
-}
-
 /// A run that has ended.
 #[derive(Debug)]
 pub struct Ended<O, L> {
@@ -96,7 +83,7 @@ pub struct Ended<O, L> {
     pub replayed: usize,
     /// Whether its journal, if it has one, holds all evaluations.
     pub is_kept: bool,
-    /// Whether no other run may begin: an end was asked for, or the time is over.
+    /// Whether no other run may begin, whatever its end.
     pub is_last: bool,
 }
 
@@ -150,14 +137,31 @@ fn watched<O: NonsmoothObjective>(
 pub fn run_in_turn<O, L, E>(
     ended: &mut Vec<Ended<O, L>>,
     mut next: impl FnMut(&[Ended<O, L>]) -> Result<Option<Stage<O, L>>, E>,
-    mut perform: impl FnMut(&Stage<O, L>) -> Result<Performed, E>,
+    mut perform: impl FnMut(Stage<O, L>) -> Result<Ended<O, L>, E>,
 ) -> Result<(), E> {
-    while ended.last().is_none_or(|run| !run.is_last)
+    let goes_on = |run: &Ended<O, L>| !run.is_last && run.report.termination != Termination::TimeLimit;
+    while ended.last().is_none_or(goes_on)
         && let Some(stage) = next(ended)?
     {
-        let Performed { report, replayed, is_kept, is_last } = perform(&stage)?;
-        let is_last = is_last || report.termination == Termination::TimeLimit;
-        ended.push(Ended { stage, report, replayed, is_kept, is_last });
+        ended.push(perform(stage)?);
     }
     Ok(())
+}
+
+/// The point at which a start arrives that is moved along a direction until its largest entry has changed by `length`,
+/// then into the set.
+///
+/// # Errors
+/// As [`project`].
+pub fn moved_start(set: &Polyhedron, start: &Vector, direction: &Vector, length: f64) -> Result<Vector, QpError> {
+    let moved = start + direction * (length / direction.amax().max(f64::MIN_POSITIVE));
+    project(set, &moved)
+}
+
+/// As [`moved_start`], along the pseudo-random direction of a seed.
+///
+/// # Errors
+/// As [`project`].
+pub fn seeded_start(set: &Polyhedron, start: &Vector, length: f64, seed: u64) -> Result<Vector, QpError> {
+    moved_start(set, start, &seeded_direction(start.len(), seed), length)
 }

@@ -24,14 +24,6 @@ pub fn objective(case: &Case, processes: &Processes) -> Result<ContactObjective,
     Ok(case.prepared(Wanted::States, processes)?)
 }
 
-/// Θ of a case, for its optimization.
-///
-/// # Errors
-/// [`Failure::Input`] naming the field.
-pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
-    Ok(case.prepared(case.wanted(), processes)?)
-}
-
 /// What a file of fields says of the objective.
 pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
     Note::new("objective", plain_unit(&objective.unit()), NoteValue::Number(value))

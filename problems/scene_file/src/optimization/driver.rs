@@ -8,8 +8,9 @@ use crate::{AccuracyName, Case, MethodName};
 use contact::contact_objective::ContactObjective;
 use contact::error::SceneError;
 use contact::solvers::Processes;
-use nonsmooth::runs::{Performed, Stage, run_in_turn};
+use nonsmooth::runs::{Stage, run_in_turn};
 use nonsmooth::{AccuracyPolicy, BundleTrustConfig, Matrix, VariableScaling, Vector};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -44,6 +45,20 @@ pub fn settings(case: &Case) -> BundleTrustConfig {
     }
 }
 
+/// Optimizes a case from its start, in this process and without a journal.
+///
+/// # Errors
+/// [`OptimizationError`] of the scene, of a start, and of the first evaluation of a run.
+pub fn optimize(case: &Case) -> Result<Runs, OptimizationError> {
+    let (processes, mut runs) = (Processes::alone(), Runs::default());
+    let (start, clock) = (Vector::from_vec(case.start_controls()), Instant::now());
+    Driver::new(case, &processes)?.run((&start, &settings(case), clock), &mut runs, |stage| {
+        let report = stage.run(&*stage.objective, &mut |_, _| ControlFlow::Continue(()))?;
+        Ok::<_, OptimizationError>(ContactRun { stage, report, replayed: 0, is_kept: true, is_last: false })
+    })?;
+    Ok(runs)
+}
+
 /// The optimization of a case, with Θ on its first mesh.
 #[derive(Debug)]
 pub struct Driver<'p> {
@@ -60,8 +75,10 @@ impl<'p> Driver<'p> {
     pub fn new(case: &Case, processes: &'p Processes) -> Result<Self, SceneError> {
         let planned = stages(case);
         let first = Arc::new(planned[0].case.prepared(case.wanted(), processes)?);
-        for later in planned.iter().skip(1).filter(|run| matches!(run.part, Part::Mesh(_))) {
-            let within = |source| SceneError::InFile { file: later.mesh(), source: Box::new(source) };
+        let meshes = planned.iter().filter(|run| matches!(run.part, Part::Mesh(_)));
+        for (index, later) in meshes.enumerate().skip(1) {
+            let file = format!("optimizer.continuation[{index}]");
+            let within = |source| SceneError::InFile { file, source: Box::new(source) };
             later.case.check_ahead(case.wanted(), processes).map_err(within)?;
         }
         Ok(Self { planned, first, processes })
@@ -83,7 +100,7 @@ impl<'p> Driver<'p> {
         &self,
         (start, config, clock): (&Vector, &BundleTrustConfig, Instant),
         runs: &mut Runs,
-        perform: impl FnMut(&ContactStage) -> Result<Performed, E>,
+        perform: impl FnMut(ContactStage) -> Result<ContactRun, E>,
     ) -> Result<(), E> {
         let step = config.first_step.unwrap_or_else(|| self.first.first_step(start));
         let Runs { ended, asked } = runs;

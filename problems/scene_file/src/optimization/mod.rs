@@ -10,26 +10,11 @@
 //! Repeated from its journals, an optimization takes the same course again, and goes on where it was interrupted.
 //!
 //! ```no_run
-//! use contact::solvers::Processes;
-//! use nonsmooth::runs::Performed;
-//! use nonsmooth::Vector;
-//! use scene_file::optimization::{ContactStage, Driver, OptimizationError, Runs, settings};
-//! use scene_file::{Case, SceneFile};
-//! use std::ops::ControlFlow;
+//! use scene_file::{Case, SceneFile, optimization::optimize};
 //! use std::path::Path;
-//! use std::time::Instant;
-//!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let case = Case::new(&SceneFile::read(Path::new("scene.toml"))?, Path::new(""))?;
-//! let processes = Processes::alone();
-//! let driver = Driver::new(&case, &processes)?;
-//! let perform = |stage: &ContactStage| -> Result<Performed, OptimizationError> {
-//!     let report = stage.run(&*stage.objective, &mut |_, _| ControlFlow::Continue(()))?;
-//!     Ok(Performed { report, replayed: 0, is_kept: true, is_last: false })
-//! };
-//! let (start, mut runs) = (Vector::from_vec(case.start_controls()), Runs::default());
-//! driver.run((&start, &settings(&case), Instant::now()), &mut runs, perform)?;
-//! println!("{:?}", runs.chosen().map(|run| &run.report.solution));
+//! println!("{:?}", optimize(&case)?.chosen().map(|run| &run.report.solution));
 //! # Ok(())
 //! # }
 //! ```
@@ -41,7 +26,7 @@ mod runs;
 mod stages;
 mod ways;
 
-pub use driver::{ContactStage, Driver, settings};
+pub use driver::{ContactStage, Driver, optimize, settings};
 pub use fairness::bending_of;
 pub use runs::{ContactRun, Label, Runs};
 pub use stages::{Attempt, MeshName, Part, PlannedRun, last_begun, stages};

@@ -74,21 +74,6 @@ pub struct PlannedRun {
     pub case: Case,
 }
 
-impl PlannedRun {
-    /// "the mesh of 12×12×4 bricks", or that of a file by its number.
-    pub(super) fn mesh(&self) -> String {
-        let bricks = |body: &BodyScene| body.block().map(|block| block.bricks.map(|count| count.to_string()).join("×"));
-        match self.part {
-            Part::Mesh(MeshName::File(number)) => format!("mesh {number} of optimizer.continuation"),
-            _ => {
-                let mut all: Vec<String> = self.case.scene.bodies.iter().filter_map(bricks).collect();
-                all.dedup();
-                format!("the mesh of {} bricks", all.join(", "))
-            }
-        }
-    }
-}
-
 /// The attempts of a case: the direct way, coarse to fine in the controls, other starts. None where one run is asked
 /// for or where there is no coarse net, and for functions of the displacements: their runs by cuts are long, and were
 /// measured to end at the same values.
@@ -144,28 +129,4 @@ pub fn stages(case: &Case) -> Vec<PlannedRun> {
 pub fn last_begun(case: &Case, folder: &Path) -> Option<PlannedRun> {
     let begun = |stage: &PlannedRun| stage.part.folder().is_none_or(|name| Journal::exists(folder.join(name)));
     stages(case).into_iter().rev().find(begun)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::SceneFile;
-    use std::path::Path;
-
-    #[test]
-    fn meshes_keep_their_proportions() {
-        let text = include_str!("../../../scenes/thin_layer.toml");
-        let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
-        let mut case = Case::new(&file, Path::new("")).expect("an example");
-        let parts = |case: &Case| stages(case).iter().map(|stage| stage.part).collect::<Vec<_>>();
-        let [direct, coarse, refined] = [Attempt::Direct, Attempt::Coarse, Attempt::Refined].map(Part::Try);
-        assert_eq!(parts(&case), [direct, coarse, refined, Part::Whole, Part::Fair]);
-        case.optimizer.single = true;
-        assert_eq!(parts(&case), [Part::Whole]);
-        case.optimizer.continuation = [6, 12, 25].map(ContinuationMesh::Bricks).to_vec();
-        let blocks = |stage: &PlannedRun| stage.case.scene.bodies[0].block().expect("a block").clone();
-        let meshes: Vec<_> =
-            stages(&case).iter().map(|stage| (blocks(stage).bricks, blocks(stage).subdomains)).collect();
-        assert_eq!(meshes, [([6, 6, 2], [2, 2, 1]), ([12, 12, 4], [2, 2, 1]), ([25, 25, 8], [5, 5, 2])]);
-    }
 }

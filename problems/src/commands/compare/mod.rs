@@ -15,7 +15,7 @@ use crate::commands::optimize::{outcome, report};
 use crate::commands::register::REGISTER;
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
-use crate::commands::solved_shape::{SolvedShape, optimized_objective};
+use crate::commands::solved_shape::SolvedShape;
 use contact::error::SceneError;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     }
     let claimed = COMPARED.map(|part| format!("{part}/{REGISTER}"));
     let (folder, initial_controls) = begin(
-        &optimized_objective(&loaded.case, &session.processes)?,
+        &loaded.case.prepared(loaded.case.wanted(), &session.processes)?,
         loaded,
         None,
         (RunKind::Comparison, &claimed),

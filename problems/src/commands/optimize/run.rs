@@ -11,10 +11,9 @@ use crate::commands::output::notice;
 use crate::commands::run_kind::RunKind;
 use crate::commands::solved_shape::ContactObjective;
 use contact::scene::SceneSize;
-use nonsmooth::runs::Performed;
 use nonsmooth::{IterationRecord, Journaled, Observer, Vector};
 use scene_file::MethodName;
-use scene_file::optimization::{ContactStage, Driver, PlannedRun, Runs, settings, stages};
+use scene_file::optimization::{ContactRun, ContactStage, Driver, PlannedRun, Runs, settings, stages};
 use std::path::Path;
 
 /// An optimization that has ended.
@@ -53,7 +52,7 @@ pub fn optimize(
     // What starts several processes asks the others to end when one has failed, and must not make them talk.
     watch_interrupts(session.processes.is_alone());
     let mut runs = Runs::default();
-    let perform = |stage: &ContactStage| performed(stage, folder.as_ref(), &session.status);
+    let perform = |stage| performed(stage, folder.as_ref(), &session.status);
     let driven = driver.run((&start, &settings(&loaded.case), session.clock), &mut runs, perform);
     driven.inspect_err(|failure| {
         if let (Some(folder), 2, true) = (&folder, failure.status(), runs.ended.is_empty()) {
@@ -64,7 +63,7 @@ pub fn optimize(
 }
 
 /// Performs a run, with a journal if there is a folder, and shows its progress.
-fn performed(stage: &ContactStage, folder: Option<&RunFolder>, status: &StatusLine) -> Result<Performed, Failure> {
+fn performed(stage: ContactStage, folder: Option<&RunFolder>, status: &StatusLine) -> Result<ContactRun, Failure> {
     let name = stage.label.part.folder();
     let label = name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
     let journaled = folder.map(|folder| folder.journaled(&*stage.objective, name.as_deref())).transpose()?;
@@ -89,7 +88,8 @@ fn performed(stage: &ContactStage, folder: Option<&RunFolder>, status: &StatusLi
         }
     };
     let is_kept = journaled.as_ref().is_none_or(Journaled::is_complete);
-    Ok(Performed { report, replayed, is_kept, is_last: interrupted() })
+    drop(journaled);
+    Ok(ContactRun { stage, report, replayed, is_kept, is_last: interrupted() })
 }
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is
