@@ -167,7 +167,7 @@ impl Interrupter {
 
     /// Shows and tells the records that are new; `Break` ends the run.
     fn watch(&mut self, center: &Vector, new: &[IterationRecord]) -> ControlFlow<()> {
-        for table in &mut self.table {
+        if let Some(table) = &mut self.table {
             new.iter().try_for_each(|record| table.observe(record))?;
         }
         if self.failure.is_set() {

@@ -2,7 +2,7 @@
 
 use crate::{Case, OptimizerSection, SceneFile};
 use contact::error::SceneError;
-use contact::scene::{BodyScene, Geometry, Scene};
+use contact::scene::Scene;
 use contact::shape::ShapeScene;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
@@ -55,52 +55,28 @@ const FIELD: &str = "optimizer.continuation";
 /// scene, so that a control means the same on all meshes.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] for meshes that do not grow, bricks beside files, files where not exactly one body is a
+/// [`SceneError::OutOfRange`] for bricks that do not grow, bricks beside files, files where not exactly one body is a
 /// mesh, and bricks where not all bodies are blocks; [`SceneError::InFile`] for a file on which the scene is none.
 pub(crate) fn cases(file: &SceneFile, folder: &Path, scene: &Scene) -> Result<Vec<Case>, SceneError> {
     let OptimizerSection { continuation: meshes, starts, .. } = &file.optimizer;
-    let shown = || meshes.iter().map(shown).collect::<Vec<_>>().join(", ");
-    let refused = |allowed: &str| Err(SceneError::out_of_range(FIELD, format!("[{}]", shown()), allowed));
     if *starts > 1 && !meshes.is_empty() {
         return Err(SceneError::out_of_range("optimizer.starts", starts, "1 with optimizer.continuation"));
     }
     let bricks: Vec<usize> = meshes.iter().filter_map(ContinuationMesh::bricks).collect();
-    if bricks.len() == meshes.len() {
-        if !bricks.is_empty() && !scene.is_of_blocks() {
-            return refused("files of meshes, such as [\"coarse.msh\", \"fine.msh\"], for a body that is a mesh");
-        }
-        grow(&bricks, "bricks", |index| bricks[index].to_string())?;
-        return Ok(vec![]);
-    }
-    if !bricks.is_empty() {
-        return refused("bricks alone (each an integer ≥ 1 and ≤ 400), or files alone");
-    }
-    let count = scene.bodies.iter().filter(|body| body.block().is_none()).count();
-    if count != 1 {
-        let allowed = match count {
-            0 => "an integer ≥ 1 and ≤ 400 for each mesh of blocks: no body of the scene is a mesh".to_owned(),
-            _ => format!("[] with {count} bodies that are meshes: a file takes the place of the only one"),
-        };
-        return refused(&allowed);
-    }
-    let cases = (0..meshes.len()).map(|index| case(file, index, folder, scene)).collect::<Result<Vec<Case>, _>>()?;
-    let nodes: Vec<usize> = cases.iter().map(|case| node_count(&case.scene)).collect();
-    grow(&nodes, "nodes", |index| format!("{} of {} nodes", self::shown(&meshes[index]), nodes[index]))?;
-    Ok(cases)
-}
-
-/// Refuses counts that do not grow.
-fn grow(counts: &[usize], what: &str, shown: impl Fn(usize) -> String) -> Result<(), SceneError> {
-    let Some(place) = counts.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
-    let allowed = format!("growing meshes, here > {} {what}", counts[place]);
-    Err(SceneError::out_of_range(FIELD, shown(place + 1), allowed))
-}
-
-fn shown(mesh: &ContinuationMesh) -> String {
-    match mesh {
-        ContinuationMesh::Bricks(count) => count.to_string(),
-        ContinuationMesh::File(name) => format!("\"{name}\""),
-    }
+    let bodies = scene.bodies.iter().filter(|body| body.block().is_none()).count();
+    let allowed = match (bricks.len(), meshes.len() - bricks.len(), bodies) {
+        (_, 0, 0) => match bricks.windows(2).find(|pair| pair[1] <= pair[0]) {
+            None => return Ok(vec![]),
+            Some(pair) => format!("growing meshes, here > {} in place of {}", pair[0], pair[1]),
+        },
+        (0, 0, _) => return Ok(vec![]),
+        (0, _, 1) => return (0..meshes.len()).map(|index| case(file, index, folder, scene)).collect(),
+        (_, 0, _) => "files of meshes, such as [\"coarse.msh\", \"fine.msh\"], for a body that is a mesh".to_owned(),
+        (0, _, 0) => "an integer ≥ 1 and ≤ 400 for each mesh of blocks: no body of the scene is a mesh".to_owned(),
+        (0, _, count) => format!("[] with {count} bodies that are meshes: a file takes the place of the only one"),
+        _ => "bricks alone (each an integer ≥ 1 and ≤ 400), or files alone".to_owned(),
+    };
+    Err(SceneError::out_of_range(FIELD, serde_json::to_string(meshes).unwrap_or_default(), allowed))
 }
 
 /// The case on one of the meshes.
@@ -122,13 +98,4 @@ fn case(file: &SceneFile, index: usize, folder: &Path, scene: &Scene) -> Result<
         }
     }
     Ok(case)
-}
-
-/// Nodes of all bodies that are meshes.
-fn node_count(scene: &Scene) -> usize {
-    let nodes = |body: &BodyScene| match &body.geometry {
-        Geometry::Mesh(own) => own.mesh.node_count(),
-        _ => 0,
-    };
-    scene.bodies.iter().map(nodes).sum()
 }

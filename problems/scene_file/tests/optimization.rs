@@ -40,6 +40,7 @@ fn meshes_of_blocks_keep_their_proportions() {
 fn controls_go_from_mesh_to_mesh() {
     let mut file = scene("lug_tet10.toml");
     file.lattice.as_mut().unwrap().bounds_of_box = None;
+    file.limit.clear();
     file.optimizer.max_evaluations = 6;
     file.optimizer.continuation = files(&["lug_hex8.msh", "lug_tet10.msh"]);
     let case = Case::new(&file, &scenes()).unwrap();
@@ -78,8 +79,6 @@ fn meshes_that_do_not_fit_the_scene_are_refused() {
     refused("taper.toml", files(&["a.msh"]), &["2 bodies that are meshes"]);
     refused("lug_tet10.toml", [files(&["lug_hex8.msh"]), vec![bricks()]].concat(), &["bricks alone", "files alone"]);
     refused("lug_tet10.toml", files(&["lug_hex8.msh", "none.msh"]), &["none.msh"]);
-    let other = ["optimizer.continuation[0] = \"bracket.msh\"", "nose"];
+    let other = ["optimizer.continuation[0] = \"bracket.msh\"", "\"top\" in bracket.msh"];
     refused("lug_tet10.toml", files(&["bracket.msh"]), &other);
-    let same = files(&["lug_hex8.msh", "lug_hex8.msh"]);
-    refused("lug_tet10.toml", same, &["\"lug_hex8.msh\" of", "growing meshes"]);
 }

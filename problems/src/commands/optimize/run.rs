@@ -11,7 +11,7 @@ use crate::commands::output::notice;
 use crate::commands::run_kind::RunKind;
 use crate::commands::solved_shape::ContactObjective;
 use contact::scene::SceneSize;
-use nonsmooth::{IterationRecord, Journaled, Observer, Vector};
+use nonsmooth::{IterationRecord, Journaled, Observer, Termination, Vector};
 use scene_file::MethodName;
 use scene_file::optimization::{ContactRun, ContactStage, Driver, PlannedRun, Runs, settings, stages};
 use std::path::Path;
@@ -89,7 +89,8 @@ fn performed(stage: ContactStage, folder: Option<&RunFolder>, status: &StatusLin
     };
     let is_kept = journaled.as_ref().is_none_or(Journaled::is_complete);
     drop(journaled);
-    Ok(ContactRun { stage, report, replayed, is_kept, is_last: interrupted() })
+    let is_last = interrupted() || report.termination == Termination::TimeLimit;
+    Ok(ContactRun { stage, report, replayed, is_kept, is_last })
 }
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is
