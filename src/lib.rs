@@ -174,6 +174,7 @@
 //! | [`nonlinear`] | nonlinear constraints: [`ConstraintKind`], [`ConstrainedFunction`] |
 //! | [`bundle`] | [`BundleTrust`]: configuration, runs |
 //! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
+//! | [`runs`] | several runs in turn: starts, subspaces, objectives |
 //! | [`verify`] | Taylor tests of any objective |
 //! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
@@ -198,6 +199,7 @@ pub mod problem;
 pub mod qp;
 pub mod reduced;
 pub mod report;
+pub mod runs;
 pub mod verify;
 
 mod accuracy;

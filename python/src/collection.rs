@@ -92,7 +92,7 @@ fn run(py: Python<'_>, setup: &Setup, theta: &impl NonsmoothObjective) -> PyResu
         .constraints(set.clone())
         .minimize(theta, setup.start())
         .map_err(crate::errors::optimize)?;
-    Ok(RunOutcome { report, set, subgradient: None })
+    Ok(RunOutcome { report, set, subgradient: None, runs: vec![] })
 }
 
 /// One problem of the collection with nonlinear constraints.

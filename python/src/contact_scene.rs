@@ -1,13 +1,13 @@
 //! Contact scenes as objectives: Θ, its subgradient, pressures and statuses at a shape, and the optimal shape.
 
 use crate::contact_mesh::MeshArrays;
+use crate::contact_run::optimize;
 use crate::contact_state::StateArrays;
 use crate::convert;
 use crate::failure::Failure;
 use crate::outcome::RunOutcome;
-use crate::run::{RunError, RunInput, drive, journaled, signal};
+use crate::run::signal;
 use crate::setup::Setup;
-use crate::watched::Watched;
 use contact::contact_objective::ContactObjective;
 use contact::cost::LimitSide;
 use contact::error::SceneError;
@@ -15,15 +15,14 @@ use contact::fields::Fields;
 use contact::load_cases::CaseStates;
 use contact::plausibility::Warning;
 use contact::solvers::{Processes, Wanted};
-use contact::standstill::standstill;
 use nonsmooth::interruption::watched;
-use nonsmooth::{Accuracy, OracleError, Report, StateSolver, VariableScaling, Vector};
+use nonsmooth::{Accuracy, OracleError, StateSolver, Vector};
 use numpy::PyArrayDyn;
 use problems::commands::{look_page, raised, solved_page};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use scene_file::{AccuracyName, Case, FILES, MethodName, SceneFile, read_text, set_field};
+use scene_file::{AccuracyName, Case, FILES, SceneFile, read_text, set_field};
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -39,7 +38,7 @@ pub struct ContactScene {
     objective: OnceLock<ContactObjective>,
 }
 
-fn input(error: SceneError) -> PyErr {
+pub fn input(error: SceneError) -> PyErr {
     match error {
         SceneError::File { .. } => PyOSError::new_err(error.to_string()),
         _ => PyValueError::new_err(error.to_string()),
@@ -63,7 +62,7 @@ fn shape(error: SceneError) -> PyErr {
 }
 
 /// Bad input, or a computation that failed.
-fn failed(error: problems::commands::Failure) -> PyErr {
+pub fn failed(error: problems::commands::Failure) -> PyErr {
     match error {
         problems::commands::Failure::Input(words) => PyValueError::new_err(words),
         error => PyRuntimeError::new_err(error.to_string()),
@@ -274,56 +273,7 @@ impl ContactScene {
         py: Python<'py>,
         setup: Setup,
     ) -> PyResult<(Option<RunOutcome>, Option<Bound<'py, PyAny>>)> {
-        let failure = Failure::default();
-        let mut config = setup.config(py)?;
-        config.composite_model = self.case.method == MethodName::Composite;
-        let wanted = if config.composite_model { Wanted::Jacobians } else { Wanted::States };
-        let objective = py.detach(|| self.objective_for(wanted)).map_err(input)?;
-        let problem = objective.solver().problem();
-        let start = setup.start();
-        let step = config.first_step.unwrap_or_else(|| objective.first_step(&start));
-        config.first_step = Some(step);
-        if setup.scaling.is_none() {
-            config.scaling = VariableScaling::Linear(objective.coordinates(&start, step));
-        }
-        problem.admissible.check(&start).map_err(input)?;
-        let input = RunInput {
-            config,
-            set: problem.admissible.polyhedron().clone(),
-            start: start.clone(),
-            callback: setup.callback.as_ref().map(|callback| callback.clone_ref(py)),
-            disp: setup.disp,
-            failure: failure.clone(),
-        };
-        let result = py.detach(|| match setup.journal.as_ref() {
-            Some((folder, identity)) => journaled(input, &objective, folder, identity),
-            None => {
-                let watched = Watched::new(&objective);
-                drive(input, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
-            }
-        });
-        let exception = failure.take().map(|error| error.into_value(py).into_bound(py).into_any());
-        match (result, exception) {
-            (Ok(mut outcome), None) => {
-                let watch = failure.clone();
-                let checks = || final_warnings(&objective, &start, &outcome.report);
-                let warnings = py.detach(|| watched(move || signal(&watch), checks));
-                match (warnings, failure.take()) {
-                    (_, Some(error)) => {
-                        return Ok((Some(outcome), Some(error.into_value(py).into_bound(py).into_any())));
-                    }
-                    (Ok(warnings), None) => outcome.report.warnings.extend(in_words(&warnings)),
-                    (Err(error), None) => {
-                        let words = format!("not-checked: the checks of the final shape failed: {error}");
-                        outcome.report.warnings.push(words);
-                    }
-                }
-                Ok((Some(outcome), None))
-            }
-            (Ok(outcome), exception) => Ok((Some(outcome), exception)),
-            (Err(_), Some(exception)) => Ok((None, Some(exception))),
-            (Err(error), None) => Err(error.into()),
-        }
+        optimize(py, &self.case, &setup)
     }
 }
 
@@ -373,20 +323,8 @@ fn set_limits(
     result.set_item("limits", limits)
 }
 
-/// What is implausible about the shape at which a run has ended, and why it stood still if it did.
-fn final_warnings(objective: &ContactObjective, start: &Vector, report: &Report) -> Result<Vec<Warning>, OracleError> {
-    let end = &report.solution;
-    let states = objective.cases().solve(end, None, Accuracy::TIGHTEST)?;
-    let mut warnings = Vec::new();
-    for (case, state) in states.iter().enumerate() {
-        warnings.extend(objective.cases().case(case).warnings(state)?);
-    }
-    warnings.extend(standstill([report], objective, start, (end, &states))?);
-    Ok(warnings)
-}
-
 /// Every warning as its code and its sentence.
-fn in_words(warnings: &[Warning]) -> Vec<String> {
+pub fn in_words(warnings: &[Warning]) -> Vec<String> {
     warnings.iter().map(ToString::to_string).collect()
 }
 

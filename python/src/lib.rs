@@ -11,6 +11,8 @@ mod collection;
 #[cfg(feature = "contact")]
 mod contact_mesh;
 #[cfg(feature = "contact")]
+mod contact_run;
+#[cfg(feature = "contact")]
 mod contact_scene;
 #[cfg(feature = "contact")]
 mod contact_state;

@@ -16,6 +16,8 @@ pub struct RunOutcome {
     pub set: Polyhedron,
     /// One subgradient at the solution, if it is known.
     pub subgradient: Option<Vector>,
+    /// The runs of an optimization that has several.
+    pub runs: Vec<serde_json::Value>,
 }
 
 #[pymethods]
@@ -64,7 +66,7 @@ impl RunOutcome {
     /// Whether the solution is a stationary point and confirmed.
     #[getter]
     fn confirmed(&self) -> bool {
-        self.report.termination.is_confirmed() && self.report.is_feasible()
+        self.report.is_proved()
     }
 
     /// Why the run ended, with numbers.
@@ -97,6 +99,12 @@ impl RunOutcome {
             Termination::Stationary { gap, .. } => gap,
             _ => None,
         }
+    }
+
+    /// The runs of an optimization that has several, as JSON.
+    #[getter]
+    fn runs(&self) -> PyResult<String> {
+        json(&self.runs)
     }
 
     /// Counts as JSON.

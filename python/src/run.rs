@@ -10,45 +10,38 @@ use crate::outer::Outer;
 use crate::setup::Setup;
 use crate::watched::Watched;
 use nonsmooth::interruption::watched;
+use nonsmooth::runs::Stage;
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, Journal, Journaled, NonsmoothObjective, Observer, OptimizeError, Polyhedron,
-    Report, Run, TablePrinter, Termination, Vector,
+    IterationRecord, Journal, Journaled, NonsmoothObjective, Observer, OptimizeError, TablePrinter, Vector,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+#[cfg(feature = "contact")]
+use scene_file::optimization::OptimizationError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Signals are looked for after steps that end later than this after the last look.
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What a run needs besides its objective; nothing of it is bound to the interpreter.
-pub struct RunInput {
-    pub config: BundleTrustConfig,
-    pub set: Polyhedron,
-    pub start: Vector,
-    /// Called after every evaluation; true ends the run.
-    pub callback: Option<Py<PyAny>>,
-    /// Whether a table is printed.
-    pub disp: bool,
-    /// Exceptions of the user's code.
-    pub failure: Failure,
-}
-
 /// Minimises a function. Returns the outcome, none if there is no point, and the exception that ended the run.
 #[pyfunction]
 pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<RunOutcome>, Option<Bound<'py, PyAny>>)> {
     let failure = Failure::default();
-    let input = RunInput {
-        config: setup.config(py)?,
+    let stage = Stage {
+        label: (),
+        objective: Arc::new(()),
         set: setup.constraints.polyhedron(py)?,
         start: setup.start(),
-        callback: setup.callback.as_ref().map(|callback| callback.clone_ref(py)),
-        disp: setup.disp,
-        failure: failure.clone(),
+        directions: None,
+        config: setup.config(py)?,
     };
+    let mut interrupter = Interrupter::new(py, &setup, &failure);
     let outer = setup.outer.as_ref().map(|outer| Outer::new(py, outer, &failure));
     let oracle = PythonOracle {
         function: setup.fun.clone_ref(py),
@@ -61,7 +54,13 @@ pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<RunOutco
         failure: failure.clone(),
         outside: Failure::default(),
     };
-    let (result, outside) = py.detach(|| run(input, oracle, setup.journal.as_ref()));
+    let (result, outside) = py.detach(|| {
+        let journal = setup.journal.as_ref().map(|(folder, identity)| (Path::new(folder), identity.as_str()));
+        let checked = journal.map_or(Ok(()), |(folder, _)| check_start(folder, &stage));
+        let watch = failure.clone();
+        let run = || performed(&stage, &oracle, journal, &mut interrupter);
+        (checked.and_then(|()| watched(move || signal(&watch), run)), oracle.outside.take())
+    });
     let exception = |error: PyErr| error.into_value(py).into_bound(py).into_any();
     match (result, failure.take()) {
         (Ok(outcome), None) => Ok((Some(outcome), None)),
@@ -83,6 +82,9 @@ pub enum RunError {
     Journal(nonsmooth::JournalError),
     /// The journal of this folder began at another point.
     OtherStart(String),
+    /// A scene could not be optimized.
+    #[cfg(feature = "contact")]
+    Scene(OptimizationError),
 }
 
 impl From<RunError> for PyErr {
@@ -90,6 +92,8 @@ impl From<RunError> for PyErr {
         match error {
             RunError::Optimize(error) => errors::optimize(error),
             RunError::Journal(error) => errors::journal(error),
+            #[cfg(feature = "contact")]
+            RunError::Scene(error) => crate::contact_scene::failed(problems::commands::Failure::from(error)),
             RunError::OtherStart(folder) => PyValueError::new_err(format!(
                 "{folder}: the journal began at another x0, so that none of its evaluations would be of use: pass that x0, or another \
                  folder as journal"
@@ -98,54 +102,42 @@ impl From<RunError> for PyErr {
     }
 }
 
-/// Runs with or without a journal; the second part is the first `OutsideDomain` of the function.
-fn run(
-    input: RunInput,
-    oracle: PythonOracle,
-    journal: Option<&(String, String)>,
-) -> (Result<RunOutcome, RunError>, Option<PyErr>) {
-    let result = match journal {
-        Some((folder, identity)) => journaled(input, &oracle, folder, identity),
-        None => {
-            let watched = Watched::new(&oracle);
-            drive(input, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
-        }
-    };
-    (result, oracle.outside.take())
-}
-
-pub fn journaled<O>(input: RunInput, objective: &O, folder: &str, identity: &str) -> Result<RunOutcome, RunError>
+/// Performs a run, with a journal in a folder if there is one. `objective` is that of the stage, or what stands for it.
+pub fn performed<O, L, P>(
+    stage: &Stage<O, L>,
+    objective: &P,
+    journal: Option<(&Path, &str)>,
+    interrupter: &mut Interrupter,
+) -> Result<RunOutcome, RunError>
 where
-    O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>,
+    P: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>,
 {
-    check_start(folder, &input)?;
+    let mut watch = |center: &Vector, new: &[IterationRecord]| interrupter.watch(center, new);
+    let Some((folder, identity)) = journal else {
+        let watched = Watched::new(objective);
+        let report = stage.run(&watched, &mut watch).map_err(RunError::Optimize)?;
+        return Ok(watched.outcome(report, stage.set.clone()));
+    };
     let watched = Watched::new(Journaled::open(objective, folder, identity).map_err(RunError::Journal)?);
-    let (mut report, set) = drive(input, &watched).map_err(RunError::Optimize)?;
+    let mut report = stage.run(&watched, &mut watch).map_err(RunError::Optimize)?;
     watched.inner.complete(&mut report);
-    Ok(watched.outcome(report, set))
+    Ok(watched.outcome(report, stage.set.clone()))
 }
 
 /// Refuses to continue from another start: the run would drop the evaluations of the journal.
-fn check_start(folder: &str, input: &RunInput) -> Result<(), RunError> {
+pub fn check_start<O, L>(folder: &Path, Stage { set, start, .. }: &Stage<O, L>) -> Result<(), RunError> {
     let journal = Journal::read(folder).map_err(RunError::Journal)?;
     let first = journal.as_ref().and_then(|journal| journal.entries.first());
     // Coordinates of the run round.
-    let same =
-        |point: &[f64]| point.iter().zip(input.start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * input.start.amax());
+    let same = |point: &[f64]| point.iter().zip(start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * start.amax());
     match first {
         // A journal of other size is refused as such; an inadmissible start is moved and need not be the first point.
-        Some(entry) if entry.point.len() == input.start.len() && input.set.dimension() == input.start.len() => {
-            let is_other = input.set.violation(&input.start) == 0.0 && !same(&entry.point);
-            if is_other { Err(RunError::OtherStart(folder.to_owned())) } else { Ok(()) }
+        Some(entry) if entry.point.len() == start.len() && set.dimension() == start.len() => {
+            let is_other = set.violation(start) == 0.0 && !same(&entry.point);
+            if is_other { Err(RunError::OtherStart(folder.display().to_string())) } else { Ok(()) }
         }
         _ => Ok(()),
     }
-}
-
-/// Drives the run to its end, to an exception, to a signal, or until the callback ends it.
-pub fn drive<O: NonsmoothObjective>(input: RunInput, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
-    let failure = input.failure.clone();
-    watched(move || signal(&failure), || drive_watched(input, objective))
 }
 
 /// Whether an exception is to end what the engine does: one that is kept already, or that of a signal.
@@ -156,64 +148,54 @@ pub fn signal(failure: &Failure) -> bool {
     failure.is_set()
 }
 
-fn drive_watched<O: NonsmoothObjective>(input: RunInput, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
-    let mut method = BundleTrust::new(input.config)?.constraints(input.set.clone());
-    if input.disp {
-        let mut table = TablePrinter::new(PythonStdout);
-        method = method.observer(move |record: &nonsmooth::IterationRecord| table.observe(record));
-    }
-    let mut run = method.start(objective, input.start)?;
-    let mut interrupter =
-        Interrupter { callback: input.callback, failure: input.failure, told: 0, looked: Instant::now() };
-    let mut stopped = interrupter.wants_end(&run);
-    while !stopped && run.step().is_continue() {
-        stopped = interrupter.wants_end(&run);
-    }
-    // The evaluation that ended the run has not been told yet.
-    stopped = stopped || interrupter.wants_end(&run);
-    let mut report = run.finish();
-    if stopped && report.termination == Termination::Unfinished {
-        report.termination = Termination::StoppedByObserver;
-    }
-    Ok((report, input.set))
-}
-
-/// What may end a run from outside: callback, exceptions, signals.
-struct Interrupter {
+/// What sees a run and may end it from outside: table, callback, exceptions, signals.
+pub struct Interrupter {
+    table: Option<TablePrinter<PythonStdout>>,
+    /// Called after every evaluation; true ends the run.
     callback: Option<Py<PyAny>>,
+    /// Exceptions of the user's code.
     failure: Failure,
-    /// Evaluations that the callback knows.
-    told: usize,
     looked: Instant,
 }
 
 impl Interrupter {
-    fn wants_end(&mut self, run: &Run<'_, '_>) -> bool {
-        if self.failure.is_set() {
-            return true;
-        }
-        let new = run.history().len() > self.told && self.callback.is_some();
-        if !new && self.looked.elapsed() < SIGNAL_INTERVAL {
-            return false;
-        }
-        self.looked = Instant::now();
-        Python::attach(|py| match py.check_signals().and_then(|()| self.tell(py, run)) {
-            Ok(stop) => stop,
-            Err(error) => {
-                self.failure.set(error);
-                true
-            }
-        })
+    pub fn new(py: Python<'_>, setup: &Setup, failure: &Failure) -> Self {
+        let callback = setup.callback.as_ref().map(|callback| callback.clone_ref(py));
+        let table = setup.disp.then(|| TablePrinter::new(PythonStdout));
+        Self { table, callback, failure: failure.clone(), looked: Instant::now() }
     }
 
-    /// Tells the callback what is new.
-    fn tell(&mut self, py: Python<'_>, run: &Run<'_, '_>) -> PyResult<bool> {
-        let Some(callback) = &self.callback else { return Ok(false) };
-        while let Some(record) = run.history().get(self.told) {
-            self.told += 1;
+    /// Shows and tells the records that are new; `Break` ends the run.
+    fn watch(&mut self, center: &Vector, new: &[IterationRecord]) -> ControlFlow<()> {
+        if let Some(table) = &mut self.table {
+            new.iter().try_for_each(|record| table.observe(record))?;
+        }
+        if self.failure.is_set() {
+            return ControlFlow::Break(());
+        }
+        let is_told = !new.is_empty() && self.callback.is_some();
+        if !is_told && self.looked.elapsed() < SIGNAL_INTERVAL {
+            return ControlFlow::Continue(());
+        }
+        self.looked = Instant::now();
+        let told = Python::attach(|py| py.check_signals().and_then(|()| self.tell(py, center, new)));
+        match told {
+            Ok(false) => ControlFlow::Continue(()),
+            Ok(true) => ControlFlow::Break(()),
+            Err(error) => {
+                self.failure.set(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    /// Tells the callback what is new; whether it wants the end.
+    fn tell(&self, py: Python<'_>, center: &Vector, new: &[IterationRecord]) -> PyResult<bool> {
+        let (Some(callback), Some(last)) = (&self.callback, new.last()) else { return Ok(false) };
+        for record in new {
             // Records are plain data; one that has no form in JSON is told as none.
             let record = serde_json::to_string(record).unwrap_or_else(|_| "null".to_owned());
-            let answer = callback.bind(py).call1((convert::array(py, run.center()), run.value(), record))?;
+            let answer = callback.bind(py).call1((convert::array(py, center), last.center_value, record))?;
             if answer.is_truthy()? {
                 return Ok(true);
             }

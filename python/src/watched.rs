@@ -26,7 +26,7 @@ impl<O> Watched<O> {
         let cuts = report.certificate.iter().flat_map(|certificate| &certificate.cuts);
         let mut of_cuts = cuts.filter(|cut| cut.point == report.solution).map(|cut| &cut.subgradient);
         let subgradient = there.map(|(_, _, subgradient)| subgradient).or_else(|| of_cuts.next()).cloned();
-        RunOutcome { report, set, subgradient }
+        RunOutcome { report, set, subgradient, runs: vec![] }
     }
 }
 

@@ -1,9 +1,12 @@
 """Helpers of the tests. The wheel under test is built with the feature `collection`, by .ci/python."""
 
+import json
 import os
 import signal
+import subprocess
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,6 +34,14 @@ def collection():
     """The problems of the collection by name."""
     problem = _engine.CollectionProblem
     return {name: problem(name) for name in problem.names()}
+
+
+@pytest.fixture(scope="session")
+def contact3d():
+    """The program of the repository, built if it is not there."""
+    build = ["cargo", "build", "--locked", "-p", "problems", "--bin", "contact3d", "--message-format=json"]
+    printed = subprocess.run(build, cwd=Path(__file__).parents[2], capture_output=True, check=True, text=True).stdout
+    return [json.loads(line)["executable"] for line in printed.splitlines() if '"executable":"' in line][-1]
 
 
 @pytest.fixture

@@ -1,8 +1,10 @@
 """Contact scenes from Python give the numbers of the binaries."""
 
 import copy
+import json
 import multiprocessing
 import os
+import subprocess
 import time
 import warnings
 from pathlib import Path
@@ -44,14 +46,57 @@ def test_the_gradient_passes_the_taylor_test():
     assert nonsmooth.taylor_test(scene.fun, x.ravel(), disp=False).right
 
 
-def test_optimize_ends_as_the_command_does(signorini):
+def test_one_run_is_that_of_the_readme():
     told = []
-    result = signorini.optimize(callback=told.append)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", optimizer={"single": True})
+    result = scene.optimize(callback=told.append)
     # README.md: 14 evaluations, confirmed.
-    assert result.success and result.nfev == 14 == len(told)
+    assert result.success and result.nfev == 14 == len(told) and len(result.runs) == 1
     assert abs(result.fun / 1.4770e16 - 1) < 1e-4
     assert result.recheck().agrees
-    assert abs(signorini.evaluate(result.x.reshape(6, 6)).theta / result.fun - 1) < 1e-9
+    assert abs(scene.evaluate(result.x.reshape(6, 6)).theta / result.fun - 1) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("name", "fields"),
+    [
+        # Attempts, a run from the best of them, fairness.
+        ("signorini.toml", {"mesh": SMALL, "optimizer": {"starts": 2}}),
+        ("jack_seat.toml", {"mesh": {"bricks": [4, 4, 4]}, "optimizer": {"max_evaluations": 8}}),
+        ("signorini.toml", {"optimizer": {"continuation": [2, 4], "max_evaluations": 5}}),
+        ("lug_hex8.toml", {"optimizer": {"continuation": ["lug_hex8.msh", "lug_tet10.msh"], "max_evaluations": 3}}),
+    ],
+)
+def test_optimize_finds_the_controls_of_the_program(contact3d, tmp_path, name, fields):
+    scene = contact.Scene.from_toml(SCENES / name, **fields)
+    seen = []
+    result = scene.optimize(journal=tmp_path, callback=lambda intermediate_result: seen.append(intermediate_result.x))
+    changes = [f"--set={table}.{field}={json.dumps(value)}" for table, own in fields.items() for field, value in own.items()]
+    printed = subprocess.run([contact3d, SCENES / name, *changes, "--json"], capture_output=True, check=False)
+    assert printed.returncode in (0, 1), printed.stderr
+    report = json.loads(printed.stdout)
+    assert same_bits(result.x, np.ravel(report["controls"]))
+    assert same_bits(result.fun, report["objective"]) and result.reason == report["termination"]["reason"]
+    counts = [(stage["run"], stage["evaluations"]) for stage in report["stages"]]
+    assert [(run["run"], run["nfev"]) for run in result.runs] == counts and len(counts) > 1
+    assert len(seen) == result.nfev == sum(count for _, count in counts)
+    # The callback of a run in a coarse net has all controls.
+    assert all(x.shape == result.x.shape for x in seen)
+    assert same_bits(scene.optimize(resume=tmp_path).x, result.x)
+
+
+def test_a_callback_ends_all_runs():
+    told = []
+
+    def stop(x):
+        told.append(x)
+        if len(told) == 3:
+            raise StopIteration
+
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    result = scene.optimize(callback=stop)
+    assert result.reason == "stopped" and result.nfev == len(told) == 3 and len(result.runs) == 1
+    assert scene.optimize(options={"max_seconds": 1e-6}).reason == "time_limit"
 
 
 @pytest.mark.parametrize(
@@ -139,6 +184,12 @@ def test_a_run_is_resumed(tmp_path):
     scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     whole = scene.optimize()
     scene.optimize(journal=tmp_path, options={"max_evaluations": 3})
+    with pytest.raises(FileExistsError, match="resume="):
+        scene.optimize(journal=tmp_path)
+    with pytest.raises(FileNotFoundError, match="journal="):
+        scene.optimize(resume=tmp_path / "elsewhere")
+    with pytest.raises(ValueError, match="began at another x0"):
+        scene.optimize(start=scene.start + 1e-3, resume=tmp_path)
     assert same_bits(scene.optimize(resume=tmp_path).x, whole.x)
 
 

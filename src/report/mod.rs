@@ -84,6 +84,11 @@ impl Report {
         self.constraints.iter().all(|constraint| constraint.satisfied)
     }
 
+    /// Whether the end is proved stationary, and all nonlinear constraints are satisfied there.
+    pub fn is_proved(&self) -> bool {
+        self.termination.is_confirmed() && self.is_feasible()
+    }
+
     /// What to try next.
     pub fn advice(&self) -> &'static str {
         self.termination.advice(self.certificate.as_ref().is_some_and(|certificate| certificate.convex))

@@ -27,6 +27,7 @@ mod penalty;
 mod plateau;
 mod proposers;
 mod restart;
+mod runs;
 mod second_look;
 mod sums;
 mod terminations;

@@ -31,7 +31,8 @@ pub(super) fn words(node: &Node<'_>) -> String {
     } else {
         "a table"
     };
-    format!("{kind}{}{unit}", range(node))
+    let or_text = if node.is("integer") && node.is("string") { " or a text" } else { "" };
+    format!("{kind}{}{or_text}{unit}", range(node))
 }
 
 /// The range of a number, in words.

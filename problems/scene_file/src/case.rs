@@ -1,17 +1,20 @@
 //! From a scene file to the scene and the settings of a run.
 
+use crate::continuation;
 use crate::conversion::{Parts, Sources, scene_of};
 use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
 use crate::mesh_file;
 use crate::region::check_body;
 use crate::{AccuracyName, MethodName, Objective, OptimizerSection, OutputSection, SceneFile};
+use contact::communication::InProcess;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
 use contact::cost::{Limit, Measure};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::load_cases::{Bound, CasesCost, LoadCase, Over, WeightedCase};
+use contact::memory;
 use contact::names::find;
 use contact::scene::{Block, Scene};
 use contact::solvers::{Processes, SolverKind, SolverPlan, Wanted};
@@ -49,6 +52,8 @@ pub struct Case {
     pub clusters: Option<usize>,
     /// Settings of the optimizer.
     pub optimizer: OptimizerSection,
+    /// The case on each file of its continuation; empty without one, and for bricks.
+    pub meshes: Vec<Case>,
     /// Predicted decrease, relative to the objective, at which an optimization ends.
     pub tolerance: f64,
     /// Outputs.
@@ -82,7 +87,7 @@ impl Case {
     fn of_sources(file: &SceneFile, sources: &Sources<'_>) -> Result<Self, SceneError> {
         let (Parts { scene, start, notes }, folder) = (scene_of(file, sources)?, sources.folder);
         scene.validate()?;
-        check_continuation(&file.optimizer, !scene.is_of_blocks())?;
+        let meshes = continuation::cases(file, folder, &scene)?;
         check_body("objective.region", file.objective.region.as_ref(), &scene)?;
         for (index, limit) in file.limit.iter().enumerate() {
             check_body(&format!("limit[{index}].region"), limit.region.as_ref(), &scene)?;
@@ -110,6 +115,7 @@ impl Case {
             preconditioner: file.solver.preconditioner,
             clusters: file.solver.clusters,
             optimizer: file.optimizer.clone(),
+            meshes,
             tolerance,
             output: file.output.clone(),
             notes,
@@ -149,6 +155,26 @@ impl Case {
         };
         let cases = self.cases.iter().zip(self.plans(wanted)).map(case).collect::<Result<_, SceneError>>()?;
         ContactObjective::of_cases(cases, self.over, &self.limits)
+    }
+
+    /// What an optimization asks of the contact solver.
+    pub fn wanted(&self) -> Wanted {
+        match self.method {
+            MethodName::Composite => Wanted::Jacobians,
+            MethodName::Bundle => Wanted::States,
+        }
+    }
+
+    /// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without
+    /// preparing a solver for it. What each of several processes needs is looked at when they begin the case.
+    ///
+    /// # Errors
+    /// [`SceneError`] naming the field.
+    pub fn check_ahead(&self, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
+        if processes.is_alone() {
+            self.plans(wanted).try_for_each(|plan| memory::check(&plan, &InProcess))?;
+        }
+        self.cost().map(|_| ())
     }
 
     /// Θ over all load cases as a function of their outputs, with their limits and problems; no solver is prepared.
@@ -230,23 +256,4 @@ fn check_accuracy(objective: &Objective, accuracy: AccuracyName) -> Result<(), S
         return Err(SceneError::out_of_range("optimizer.accuracy", "on-demand", allowed));
     }
     Ok(())
-}
-
-fn check_continuation(optimizer: &OptimizerSection, is_mesh: bool) -> Result<(), SceneError> {
-    let meshes = &optimizer.continuation;
-    if is_mesh && !meshes.is_empty() {
-        let value = format!("{meshes:?}");
-        return Err(SceneError::out_of_range("optimizer.continuation", value, "[] with a mesh: a mesh is one mesh"));
-    }
-    if optimizer.starts > 1 && !meshes.is_empty() {
-        return Err(SceneError::out_of_range("optimizer.starts", optimizer.starts, "1 with optimizer.continuation"));
-    }
-    match meshes.windows(2).find(|pair| pair[1] <= pair[0]) {
-        Some(pair) => Err(SceneError::out_of_range(
-            "optimizer.continuation",
-            pair[1],
-            format!("growing meshes, here > {}", pair[0]),
-        )),
-        None => Ok(()),
-    }
 }

@@ -11,6 +11,7 @@ mod bodies;
 mod case;
 mod check;
 mod contact_section;
+mod continuation;
 mod conversion;
 mod draft;
 mod grid_file;
@@ -21,6 +22,7 @@ mod loading;
 mod mesh_check;
 mod mesh_file;
 mod objective;
+pub mod optimization;
 mod print;
 mod region;
 mod schema;
@@ -36,6 +38,7 @@ pub use allowed::choices;
 pub use bodies::{BlockSection, BodySection, default_subdomains};
 pub use case::Case;
 pub use contact_section::{ContactSection, FaceSection, FrictionSection};
+pub use continuation::ContinuationMesh;
 pub use draft::draft;
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::{LimitSection, QuantityName};
@@ -57,7 +60,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Names of copies of the files of a scene, beside a copy of its own.
-pub const FILES: [&str; 4] = ["obstacle.csv", "start.csv", "wanted_pressure.csv", "body.msh"];
+pub const FILES: [&str; 5] = ["obstacle.csv", "start.csv", "wanted_pressure.csv", "continuation.msh", "body.msh"];
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -144,12 +147,15 @@ impl SceneFile {
 
     /// The files that the scene names, each with the name of its copy beside a copy of the scene.
     pub fn files_mut(&mut self) -> Vec<(String, &mut String)> {
-        let [obstacle, start, wanted, mesh] = FILES;
-        let Self { body: bodies, contact: contacts, .. } = self;
+        let [obstacle, start, wanted, continuation, mesh] = FILES;
+        let Self { body: bodies, contact: contacts, optimizer, .. } = self;
         let mut files = Vec::new();
         if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
             files.push((wanted.to_owned(), file));
         }
+        let (count, meshes) = (optimizer.continuation.len(), optimizer.continuation.iter_mut().enumerate());
+        let name = |index| numbered(continuation, index, count, "");
+        files.extend(meshes.filter_map(|(index, mesh)| Some((name(index), mesh.file_mut()?))));
         let count = bodies.len();
         for (index, body) in bodies.iter_mut().enumerate() {
             files.extend(body.mesh.as_mut().map(|file| (numbered(mesh, index, count, ""), file)));
@@ -171,6 +177,11 @@ impl SceneFile {
             }
         }
         files
+    }
+
+    /// The files of all bodies that are meshes.
+    pub(crate) fn mesh_files_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        self.body.iter_mut().filter_map(|body| body.mesh.as_mut())
     }
 
     /// The value of the field at a path such as `solver.kind` or `body[0].unit`, as it stands in a file; for a field

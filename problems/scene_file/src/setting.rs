@@ -47,7 +47,9 @@ impl Setting {
         let value = match nodes.first().filter(|node| plain(node)) {
             None => value(text),
             Some(list) => {
-                let mut entries: Vec<Value> = text.split(['x', ',']).map(value).collect();
+                // Names of files may have an x.
+                let has_names = list.items().is_some_and(|items| items.is("string"));
+                let mut entries: Vec<Value> = text.split(|c| c == ',' || c == 'x' && !has_names).map(value).collect();
                 if let ([only], Some(count)) = (&entries[..], list.length()) {
                     entries = vec![only.clone(); count];
                 }

@@ -1,5 +1,6 @@
 //! Solver, optimizer and outputs of a scene file.
 
+use crate::ContinuationMesh;
 use contact::contact_shape::SolverKind;
 use contact::tfeti::PreconditionerKind;
 use schemars::JsonSchema;
@@ -54,10 +55,11 @@ pub struct OptimizerSection {
     /// relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which
     /// can reach or cross 0.
     pub accuracy: AccuracyName,
-    /// Growing meshes of a coarse-to-fine optimization of blocks, bricks along the axis that has most, the others in
-    /// proportion; empty for one run on the mesh of the scene.
-    #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
-    pub continuation: Vec<usize>,
+    /// Growing meshes of a coarse-to-fine optimization: of blocks, bricks along the axis that has most, the others in
+    /// proportion; of a scene in which one body is a mesh, Gmsh files beside the scene file, each in place of its
+    /// mesh, with lattices of the same extents. Empty for one run on the mesh of the scene.
+    #[schemars(extend("x-unit" = "1"))]
+    pub continuation: Vec<ContinuationMesh>,
     /// So many starts on one mesh, always the same ones: that of the scene, a surface that follows the counter surface,
     /// then smooth random surfaces; of a lattice, random displacements.
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]

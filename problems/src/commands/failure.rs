@@ -3,6 +3,7 @@
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, JournalError, OptimizeError, OracleError, Termination};
+use scene_file::optimization::OptimizationError;
 use thiserror::Error;
 
 /// The reason for which a command failed.
@@ -126,6 +127,16 @@ impl From<OptimizeError> for Failure {
             OptimizeError::Oracle(source) => source.into(),
             OptimizeError::Input(_) | OptimizeError::Infeasible { .. } => Self::Input(error.to_string()),
             _ => Self::Computation(error.to_string()),
+        }
+    }
+}
+
+impl From<OptimizationError> for Failure {
+    fn from(error: OptimizationError) -> Self {
+        match error {
+            OptimizationError::Scene(error) => error.into(),
+            OptimizationError::Run(error) => error.into(),
+            error => Self::computation(error),
         }
     }
 }

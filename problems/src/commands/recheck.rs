@@ -7,10 +7,10 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{SCENE, file_error, json};
 use crate::commands::limit_check::{LimitCheck, MAX_ROUNDING, Number};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::optimize::stages::{MeshStage, last_begun};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{differences, is_below};
 use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
+use scene_file::optimization::{PlannedRun, last_begun};
 use scene_file::{SceneFile, read_text};
 use serde::Serialize;
 use std::path::Path;
@@ -61,7 +61,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let own = own_scene(loaded, folder)?;
     let case = own.as_ref().map_or(&loaded.case, |own| &own.case);
     let controls = controls::read(&folder.join("controls.json"), Layout::of(&case.scene))?;
-    let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
+    let Some(PlannedRun { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
     let (cost, bounds, problems) = case.cost()?;

@@ -117,9 +117,9 @@ const OPTIMIZER_OPTIONS: [SceneOption; 5] = [
         "Longest time of this run in seconds; the evaluation under way is finished",
     ),
     option(
-        (OPTIMIZER, "continuation", "N1,N2,..."),
+        (OPTIMIZER, "continuation", "N1,N2,...|MESH1,MESH2,..."),
         &["optimizer.continuation"],
-        "Optimize on growing meshes with so many bricks along the axis that has most, the others in proportion, each starting from the last optimum",
+        "Optimize on growing meshes, with so many bricks along the axis that has most, the others in proportion, or on files beside the scene file, each starting from the last optimum",
     ),
     option(
         (OPTIMIZER, "starts", "K"),

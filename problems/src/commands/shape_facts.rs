@@ -4,7 +4,6 @@ use crate::commands::facts::{Fact, Value};
 use crate::commands::numbers::{number, raised, reduction};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::contact_objective::PressureRoot;
-use nonsmooth::Report;
 
 /// Decrease of Θ, relative to Θ, up to which a shape is no better than another.
 const NO_DECREASE: f64 = 1e-9;
@@ -145,9 +144,4 @@ fn changed([start, end]: [f64; 2], unit: &str) -> String {
         None => String::new(),
     };
     format!("{} -> {} {unit}{times}", number(start), number(end))
-}
-
-/// Whether the end of a run is proved stationary, and keeps all limits.
-pub fn is_proved(report: &Report) -> bool {
-    report.termination.is_confirmed() && report.is_feasible()
 }

@@ -5,17 +5,14 @@ use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::plain_unit;
-use contact::communication::InProcess;
 use contact::contact_shape::ContactState;
-use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::load_cases::CaseStates;
-use contact::memory;
 use contact::plausibility::Warning;
 use contact::solvers::{Processes, SolverKind, Wanted};
 use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
-use scene_file::{Case, MethodName};
+use scene_file::Case;
 
 pub use contact::contact_objective::ContactObjective;
 
@@ -24,39 +21,7 @@ pub use contact::contact_objective::ContactObjective;
 /// # Errors
 /// [`Failure::Input`] naming the field.
 pub fn objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
-    objective_for(case, Wanted::States, processes)
-}
-
-/// Θ of a case, for its optimization.
-///
-/// # Errors
-/// [`Failure::Input`] naming the field.
-pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
-    objective_for(case, wanted(case), processes)
-}
-
-/// What an optimization of a case asks of the contact solver.
-pub fn wanted(case: &Case) -> Wanted {
-    match case.method {
-        MethodName::Composite => Wanted::Jacobians,
-        MethodName::Bundle => Wanted::States,
-    }
-}
-
-fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
-    Ok(case.prepared(wanted, processes)?)
-}
-
-/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing
-/// a solver for it. What each of several processes needs is looked at when they begin the case.
-///
-/// # Errors
-/// [`SceneError`] naming the field.
-pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
-    if processes.is_alone() {
-        case.plans(wanted).try_for_each(|plan| memory::check(&plan, &InProcess))?;
-    }
-    case.cost().map(|_| ())
+    Ok(case.prepared(Wanted::States, processes)?)
 }
 
 /// What a file of fields says of the objective.

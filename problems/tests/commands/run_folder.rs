@@ -60,7 +60,7 @@ fn an_objective_without_a_value_on_a_later_mesh_is_refused_at_the_start() {
     let wanted = "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 4)\" }";
     let file = scene(scratch.path(), "tangential.toml", wanted);
     let run = [&file, "--continuation", "2,10", "--max-evaluations", "2", "--out", text(&out)];
-    refused(CONTACT, &run, &["the mesh of 10×10×10 bricks", "objective.wanted.pressure", "x1 = 4, x2 = 0"]);
+    refused(CONTACT, &run, &["optimizer.continuation[1]: objective.wanted.pressure", "x1 = 4, x2 = 0"]);
     assert!(!out.exists());
     json(CONTACT, &[&file, "--continuation", "2", "--max-evaluations", "2", "--json"]);
     let file = scene(scratch.path(), "tangential.toml", &wanted.replace("1/(x1 - 4)", "sin x1"));

@@ -101,7 +101,11 @@ fn a_mesh_beyond_the_memory_is_named_before_the_first_row() {
     );
     let output = kit::run(SIGNORINI, &["--continuation", "2,400", "--max-evaluations", "2"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(errors(&output).contains("the mesh of 400×400×400 bricks"), "{}", errors(&output));
+    assert!(
+        errors(&output).contains("optimizer.continuation[1]: mesh.bricks = 400x400x400 bricks"),
+        "{}",
+        errors(&output)
+    );
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Attempts, fairness and `--single`.
 
 use serde_json::Value;
+use std::path::Path;
 use testset::kit::{self, text};
 
 const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
@@ -49,4 +50,35 @@ fn a_run_of_several_parts_resumes_to_the_same_bits() {
     assert_eq!(found(&kit::json(CONTACT, &["--resume", text(&folder), "--json"])), found(&whole));
     kit::refused(CONTACT, &["--resume", text(&folder), "--single"], &["--resume is allowed"]);
     kit::refused(CONTACT, &[SEAT, "--set", "optimizer.single=3"], &["optimizer.single"]);
+}
+
+/// Controls do not depend on the mesh of a body: they go from file to file, also where a run is cut and resumed.
+#[test]
+fn meshes_of_files_grow_and_resume() {
+    let (scenes, scratch) = (concat!(env!("CARGO_MANIFEST_DIR"), "/scenes"), kit::scratch());
+    for name in ["lug_tet10.msh", "lug_hex8.msh"] {
+        std::fs::copy(Path::new(scenes).join(name), scratch.path().join(name)).unwrap();
+    }
+    let scene = std::fs::read_to_string(Path::new(scenes).join("lug_tet10.toml")).unwrap();
+    let (bodies, rest) = scene.split_once("[[limit]]").unwrap();
+    let lug = scratch.path().join("free_lug.toml");
+    std::fs::write(&lug, format!("{bodies}{}", &rest[rest.find("[objective]").unwrap()..])).unwrap();
+    let lug = text(&lug);
+    let meshes = ["--continuation", "lug_hex8.msh,lug_tet10.msh", "--no-checks", "--json"];
+    let run = |more: &[&str]| kit::json(CONTACT, &[&[lug], &meshes[..], more].concat());
+    let whole = run(&["--max-evaluations", "4"]);
+    let stages = whole["stages"].as_array().unwrap();
+    assert_eq!(stages.iter().map(|stage| stage["run"].as_str().unwrap()).collect::<Vec<_>>(), ["mesh_1", "mesh_2"]);
+    assert_eq!(stages[1]["objective"], whole["objective"]);
+    let value = |stage: usize, key: &str| stages[stage][key].as_f64().unwrap();
+    assert!(value(0, "objective") < value(0, "objective_start") && value(1, "objective") < value(1, "objective_start"));
+    let folder = scratch.path().join("run");
+    run(&["--max-evaluations", "2", "--out", text(&folder)]);
+    // The folder holds copies of all meshes.
+    assert!(folder.join("continuation-1.msh").exists() && folder.join("mesh_2/journal.jsonl").exists());
+    let resume = ["--resume", text(&folder), "--max-evaluations", "4", "--no-checks", "--json"];
+    assert_eq!(found(&kit::json(CONTACT, &resume)), found(&whole));
+    let [last, exported] = ["mesh_2", "exported"].map(|name| folder.join(name));
+    kit::json(CONTACT, &[lug, "export", "--run", text(&last), "--out", text(&exported), "--json"]);
+    kit::refused(CONTACT, &[lug, "--continuation", "4,none.msh"], &["--continuation", "bricks alone"]);
 }

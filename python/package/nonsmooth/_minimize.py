@@ -1,5 +1,6 @@
 """`minimize`, `minimize_composite`, and the method for `scipy.optimize.minimize`."""
 
+import glob
 import inspect
 import json
 import os
@@ -405,8 +406,8 @@ def told(callback):
     return tell
 
 
-def journal_of(journal, resume, identity):
-    """Folder and identity for the engine."""
+def journal_of(journal, resume, identity, has_runs=False):
+    """Folder and identity for the engine; with ``has_runs``, folders below may hold journals too."""
     if journal is not None and resume is not None:
         raise ValueError("pass journal to begin a run, or resume to continue one, not both")
     folder = journal if journal is not None else resume
@@ -416,7 +417,8 @@ def journal_of(journal, resume, identity):
     # A path of the journal itself is as good as that of its folder.
     if os.path.basename(folder) == "journal.jsonl":
         folder = os.path.dirname(folder) or "."
-    exists = os.path.exists(os.path.join(folder, "journal.jsonl"))
+    names = ["journal.jsonl"] + (["*/journal.jsonl"] if has_runs else [])
+    exists = any(glob.glob(os.path.join(glob.escape(folder), name)) for name in names)
     if journal is not None and exists:
         raise FileExistsError(f"{folder} holds a journal: pass resume={folder!r} to continue it, or another folder")
     if resume is not None and not exists:

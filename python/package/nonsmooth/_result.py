@@ -149,6 +149,10 @@ class Result(OptimizeResult):
     limits : list of dict
         For scenes with limits, one each: ``excess``, the limited quantity minus its limit, ``satisfied``, and ``multiplier``, by how much
         theta would fall per unit more.
+    runs : list of dict
+        For scenes, the runs that the optimization consists of (attempts, starts, meshes), one each: ``run``, the name of its folder
+        below that of the journal, ``start_value``, ``fun``, ``nfev``, ``seconds``, ``message``. ``nfev`` and ``njev`` count the
+        evaluations of all; ``nit``, ``history``, ``counts`` and ``certificate`` are those of the run that has found x.
     """
 
     def recheck(self):
@@ -198,6 +202,8 @@ def build(outcome, outer=None, nonlinear=None):
         found = nonlinear.found(reports)
         outer = outer or _ONE_OUTPUT
     counts = json.loads(outcome.counts)
+    runs = json.loads(outcome.runs)
+    evaluations = sum(run["nfev"] for run in runs) if runs else counts["evaluations"]
     reason = outcome.reason
     history = History(json.loads(outcome.history))
     advice = _ADVICE | _ADVICE_IF_CONVEX if outcome.convex else _ADVICE
@@ -210,8 +216,8 @@ def build(outcome, outer=None, nonlinear=None):
         x=outcome.x,
         jac=outcome.subgradient,
         nit=counts["iterations"],
-        nfev=counts["evaluations"],
-        njev=counts["evaluations"],
+        nfev=evaluations,
+        njev=evaluations,
         gap=outcome.gap,
         **found,
         penalty=outcome.penalty,
@@ -226,6 +232,7 @@ def build(outcome, outer=None, nonlinear=None):
             {"excess": found["value"], "satisfied": found["satisfied"], "multiplier": found["multiplier"]}
             for found in reports
         ],
+        runs=runs,
     )
     # No entry of the dict: it is not for users.
     object.__setattr__(result, "_outer", outer)

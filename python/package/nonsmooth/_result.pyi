@@ -47,6 +47,7 @@ class Result(OptimizeResult):
     seconds: float
     warnings: list[str]
     limits: list[dict[str, Any]]
+    runs: list[dict[str, Any]]
     def recheck(self) -> Recheck: ...
     def __dir__(self) -> list[str]: ...
 

@@ -413,20 +413,25 @@ class Scene:
         return self._scene.evaluate(self._flat(controls, "heights" if self._scene.has_heights else "controls"), checks)
 
     def optimize(self, start=None, options=None, callback=None, *, journal=None, resume=None):
-        """Minimise theta over the admissible controls, with the Jacobian of all pressures where theta is a function of them.
+        """Minimise theta over the admissible controls, as the command ``contact3d optimize`` does: to the same controls, bit for bit.
+
+        The runs are those of the command too: attempts with all controls and with a coarse net of them, a run from the best of
+        them and one from a fairer shape; one per start, or per mesh of ``optimizer.continuation``. The scene's fields ``optimizer``
+        say which, ``optimizer={"single": True}`` asks for one run.
 
         Parameters
         ----------
         start : array_like, optional
             Controls to begin with; by default those of the scene.
         options, callback, journal, resume : optional
-            As for `nonsmooth.minimize`. By default, ``max_evaluations``, ``tolerance`` and the limits are those of the
-            scene, first step and scaling those of the command ``contact3d optimize``.
+            As for `nonsmooth.minimize`; by default, the options are those of the scene. ``max_evaluations`` holds for every run,
+            ``max_seconds`` for all of them together, ``scaling`` for those with all controls. The callback sees every run, and ends
+            them all; a journal has a folder for each.
 
         Returns
         -------
         Result
-            ``x`` holds the controls in row-major order, flattened. ``warnings`` holds those of the optimizer and those about
+            ``x`` holds the controls in row-major order, flattened, ``runs`` what each run has found. ``warnings`` holds those of the optimizer and those about
             the final shape, with codes as in `Evaluation`.
         """
         _check_process()
@@ -449,7 +454,7 @@ class Scene:
             "scaling": scaling,
             "callback": told(callback),
             "disp": disp,
-            "journal": journal_of(journal, resume, self._identity()),
+            "journal": journal_of(journal, resume, self._identity(), has_runs=True),
         }
         return drive(self._scene.optimize, setup)
 

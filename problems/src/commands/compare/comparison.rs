@@ -4,13 +4,12 @@ use crate::commands::facts::{Fact, Facts, Group};
 use crate::commands::failure::Failure;
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::{number, raised, rounded};
-use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::ending;
 use crate::commands::report::Relief;
 use crate::commands::scene_words;
-use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::SolvedShape;
 use contact::solvers::Usage;
+use scene_file::optimization::ContactRun;
 use serde::Serialize;
 
 /// Relative loss of the objective up to which leaving friction out counts as cheap.
@@ -23,7 +22,7 @@ const ZERO: f64 = 1e-12;
 /// Two optimizations, and their shapes solved in both models. Pairs hold the case with friction first.
 pub struct Comparison<'a> {
     /// The optimizations, on their last mesh.
-    pub runs: [&'a MeshRun; 2],
+    pub runs: [&'a ContactRun; 2],
     /// Start and optimum of each, in its own model.
     pub own: [&'a [SolvedShape; 2]; 2],
     /// The shape found without friction, solved with friction; the shape found with friction, solved without.
@@ -43,7 +42,7 @@ pub struct SurfaceDifference {
 
 impl Comparison<'_> {
     fn friction(&self) -> String {
-        scene_words::friction(&self.runs[0].objective.solver().problem().scene)
+        scene_words::friction(&self.runs[0].stage.objective.solver().problem().scene)
     }
 
     /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where
@@ -60,7 +59,7 @@ impl Comparison<'_> {
 
     /// The distance of the two optimized surfaces over the nodes of all contact surfaces that controls move.
     pub fn surface_difference(&self) -> SurfaceDifference {
-        let problem = self.runs[0].objective.solver().problem();
+        let problem = self.runs[0].stage.objective.solver().problem();
         let positions = self.own.map(|shapes| problem.map.positions(shapes[1].controls.as_slice()));
         let (mut differences, mut heights) = (Vec::new(), Vec::new());
         for relief in Relief::all(problem) {
@@ -81,7 +80,7 @@ impl Comparison<'_> {
         let names = ["start", "optimized with friction", "optimized without friction"];
         let [with, without] = self.own;
         let models = [[&with[0], &with[1], &self.crossed[0]], [&without[0], &self.crossed[1], &without[1]]];
-        let (unit, friction) = (raised(&self.runs[0].objective.unit()), format!("friction {}", self.friction()));
+        let (unit, friction) = (raised(&self.runs[0].stage.objective.unit()), format!("friction {}", self.friction()));
         let row = |key, name: &str, model: usize, unit: &str, value: fn(&SolvedShape) -> f64| {
             let name = format!("{name}, {}", [friction.as_str(), "no friction"][model]);
             Fact::row(key, &name, models[model].map(|shape| value(shape).into()).into(), unit)
@@ -102,7 +101,7 @@ impl Comparison<'_> {
         let shapes = Group { title: "Shapes in both models", columns, facts: shapes, words: String::new() };
         let lead = self.conclusion();
         let mut rest = vec![
-            Fact::json("friction", &self.runs[0].objective.solver().problem().scene.friction())?,
+            Fact::json("friction", &self.runs[0].stage.objective.solver().problem().scene.friction())?,
             Fact::json("loss_without_friction_in_the_model", &self.loss())?,
             Fact::json("surface_difference", &self.surface_difference())?,
             Fact::json("evaluations", &self.runs.map(|run| run.report.counts.evaluations))?,
@@ -130,7 +129,7 @@ impl Comparison<'_> {
             number(difference.variation)
         ));
         for (run, name) in self.runs.into_iter().zip(["with", "without"]) {
-            if !is_proved(&run.report) {
+            if !run.report.is_proved() {
                 sentences.push(format!(
                     "The run {name} friction ended without a proof of optimality ({}): read the comparison as one of the best \
                      shapes found in {} evaluations.",

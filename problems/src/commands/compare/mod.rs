@@ -15,7 +15,7 @@ use crate::commands::optimize::{outcome, report};
 use crate::commands::register::REGISTER;
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
-use crate::commands::solved_shape::{SolvedShape, optimized_objective};
+use crate::commands::solved_shape::SolvedShape;
 use contact::error::SceneError;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     }
     let claimed = COMPARED.map(|part| format!("{part}/{REGISTER}"));
     let (folder, initial_controls) = begin(
-        &optimized_objective(&loaded.case, &session.processes)?,
+        &loaded.case.prepared(loaded.case.wanted(), &session.processes)?,
         loaded,
         None,
         (RunKind::Comparison, &claimed),
@@ -59,7 +59,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     }
     let comparison = cross(&runs).map_err(|failure| failure.after(&printed))?;
     let facts = comparison.facts(session.processes.usage(comparison.own[0][1].state().solver)?.as_ref())?;
-    let can_continue = runs.iter().any(|(run, _)| run.can_continue());
+    let can_continue = runs.iter().any(|(run, _)| run.runs.can_continue());
     let command = continued.as_ref().filter(|_| can_continue);
     let text = facts.text(true) + &command.map_or_else(String::new, |command| line("to continue", command));
     let object = json(&facts)?;
@@ -106,13 +106,13 @@ fn check(parts: &[LoadedScene], session: &Session<'_>) -> Result<(), Failure> {
 fn cross(runs: &[(OptimizationRun, [SolvedShape; 2])]) -> Result<Comparison<'_>, Failure> {
     let missing = || Failure::computation("a run of the comparison is missing");
     let [(with, with_shapes), (without, without_shapes)] = runs else { return Err(missing()) };
-    let (Some(with), Some(without)) = (with.chosen(), without.chosen()) else { return Err(missing()) };
+    let (Some(with), Some(without)) = (with.runs.chosen(), without.runs.chosen()) else { return Err(missing()) };
     Ok(Comparison {
         runs: [with, without],
         own: [with_shapes, without_shapes],
         crossed: [
-            SolvedShape::at(&with.objective, &without_shapes[1].controls)?,
-            SolvedShape::at(&without.objective, &with_shapes[1].controls)?,
+            SolvedShape::at(&with.stage.objective, &without_shapes[1].controls)?,
+            SolvedShape::at(&without.stage.objective, &with_shapes[1].controls)?,
         ],
     })
 }

@@ -6,7 +6,6 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, REPORT, SCENE, START, quoted};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
-use crate::commands::optimize::stages::{MeshStage, last_begun, stages};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{Difference, differences, is_below};
 use contact::error::SceneError;
@@ -14,6 +13,7 @@ use contact::scene::{Block, BodyScene, CounterSurface, Scene};
 use contact::shape::ShapedFace;
 use nonsmooth::journal::{Entry, RecordedAnswer};
 use nonsmooth::{Journal, Vector};
+use scene_file::optimization::{PlannedRun, last_begun, stages};
 use scene_file::{Case, SceneFile, read_text};
 use std::path::{Path, PathBuf};
 
@@ -223,7 +223,7 @@ impl KeptRun {
 
 /// The case of a run, or of its part in a folder: of several meshes, the last one that was begun.
 fn last(case: &Case, root: &Path, folder: &Path) -> Case {
-    let of_folder = |stage: &MeshStage| stage.part.folder().is_some_and(|name| root.join(name) == folder);
+    let of_folder = |stage: &PlannedRun| stage.part.folder().is_some_and(|name| root.join(name) == folder);
     let stage = if root == folder { last_begun(case, root) } else { stages(case).into_iter().find(of_folder) };
     stage.map_or_else(|| case.clone(), |stage| stage.case)
 }

@@ -1,14 +1,8 @@
 //! `optimize`: the shape of least contact pressure measure, on one mesh or on growing ones, kept on disk if asked for.
 
-mod coarse_net;
-mod fairness;
-pub mod mesh_run;
 pub mod run;
-pub mod stages;
-mod subspace;
 pub mod summary;
 mod vtk_history;
-mod ways;
 
 use crate::commands::facts::line;
 use crate::commands::failure::Failure;
@@ -53,40 +47,39 @@ pub fn report(
     continued: Option<&str>,
 ) -> Result<(String, [SolvedShape; 2]), Failure> {
     session.status.begin("reporting: ".into());
-    let runs = &optimization.mesh_runs;
-    let reported = optimization.reported();
-    let (Some(first), Some(last)) = (reported.first(), optimization.chosen()) else {
+    let runs = &optimization.runs;
+    let leading = runs.leading();
+    let (Some(first), Some(last)) = (leading.first(), runs.chosen()) else {
         return Err(Failure::computation("no mesh was begun"));
     };
     let solved = |controls| {
-        SolvedShape::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
+        SolvedShape::at(&last.stage.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
     };
-    let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
-    let mut checks = checks(&last.objective, &shapes[1], session.arguments)?;
-    checks.extend(last.standstill(runs, &shapes[1])?);
+    let shapes = [solved(&first.stage.start)?, solved(&last.report.solution)?];
+    let mut checks = checks(&last.stage.objective, &shapes[1], session.arguments)?;
+    checks.extend(runs.standstill((&shapes[1].controls, &shapes[1].states))?);
     let ended = Ended {
         last,
         runs,
-        meshes: optimization.meshes,
         shapes: &shapes,
         cases: &loaded.case.cases,
         checks: &checks,
-        left_out: session.arguments.left_out(last.objective.solver()),
+        left_out: session.arguments.left_out(last.stage.objective.solver()),
         processes: session.processes.usage(shapes[1].state().solver)?,
     };
     let facts = ended.facts()?;
     let object = json(&facts)?;
-    let continued = continued.filter(|_| optimization.can_continue());
+    let continued = continued.filter(|_| runs.can_continue());
     let kept = optimization.folder.as_ref().map(|folder| export_command(folder.folder.path()));
     let more = [("to continue", continued), ("to export", kept.as_deref())];
     let more: String = more.iter().filter_map(|(name, command)| Some(line(name, (*command)?))).collect();
     let write = |folder: &Folder| {
         files::write_optimization(folder, loaded, &ended, &facts)?;
         if session.arguments.series.vtk_history {
-            vtk_history::write(folder, &reported)?;
+            vtk_history::write(folder, &leading)?;
         }
         folder.write("report.txt", facts.text(true) + &more)?;
-        if let Some(run) = runs.iter().find(|run| !run.is_kept) {
+        if let Some(run) = runs.ended.iter().find(|run| !run.is_kept) {
             let evaluations = run.report.counts.evaluations;
             let words = format!("the journal does not hold all {evaluations} evaluations, see the warnings");
             return Err(Failure::Computation(format!("{}: {words}", folder.path().display())));

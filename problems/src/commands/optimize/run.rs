@@ -6,76 +6,34 @@ use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
 use crate::commands::interrupt::{interrupted, watch_interrupts};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::long_run::RunFolder;
-use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
-use crate::commands::optimize::stages::{Attempt, MeshStage, Part, stages};
-use crate::commands::optimize::ways::{beginning, best, chosen};
+use crate::commands::long_run::{Progress, RunFolder, StatusLine};
+use crate::commands::output::notice;
 use crate::commands::run_kind::RunKind;
-use crate::commands::scene_words::mesh;
-use crate::commands::solved_shape::{ContactObjective, check_ahead, optimized_objective, wanted};
-use contact::error::SceneError;
+use crate::commands::solved_shape::ContactObjective;
 use contact::scene::SceneSize;
-use nonsmooth::{Termination, Vector};
+use nonsmooth::{IterationRecord, Journaled, Observer, Termination, Vector};
 use scene_file::MethodName;
+use scene_file::optimization::{ContactRun, ContactStage, Driver, PlannedRun, Runs, settings, stages};
 use std::path::Path;
-use std::sync::Arc;
 
 /// An optimization that has ended.
 pub struct OptimizationRun {
-    /// The runs, one per mesh, start or attempt, in order; at least one.
-    pub mesh_runs: Vec<MeshRun>,
-    /// Number of runs asked for.
-    pub meshes: usize,
+    /// The runs; at least one has ended.
+    pub runs: Runs,
     /// The folder in which it is kept.
     pub folder: Option<RunFolder>,
 }
 
 impl OptimizationRun {
-    /// The run that the optimization is reported by.
-    pub fn chosen(&self) -> Option<&MeshRun> {
-        chosen(&self.mesh_runs)
-    }
-
-    /// The runs that lead to the one that it is reported by, this one included: all meshes in turn, one start alone, or
-    /// the best attempt and the runs from there.
-    pub fn reported(&self) -> Vec<&MeshRun> {
-        let Some(chosen) = self.chosen() else { return vec![] };
-        let runs = self.mesh_runs.iter();
-        match chosen.part {
-            Part::Mesh(_) => runs.collect(),
-            Part::Start(_) | Part::Try(_) => vec![chosen],
-            Part::Whole | Part::Fair => {
-                let attempt = best(runs.clone().filter(|run| run.part.is_attempt()));
-                let later = runs.clone().skip_while(|run| run.part.is_attempt());
-                let until = later.take_while(|run| run.part == Part::Whole || chosen.part == Part::Fair);
-                let is_refined = attempt.is_some_and(|run| run.part == Part::Try(Attempt::Refined));
-                let coarse = runs.clone().filter(|run| is_refined && run.part == Part::Try(Attempt::Coarse));
-                coarse.chain(attempt).chain(until).collect()
-            }
-        }
-    }
-
     /// Whether the time limit or an interruption ended it.
     pub fn was_cut_short(&self) -> bool {
-        self.mesh_runs.last().is_some_and(ran_out_of_time)
+        self.runs.ended.last().is_some_and(|run| run.is_last) || interrupted()
     }
 
     /// Why it failed, if failures of the oracle or of the subproblem ended the run that it is reported by.
     pub fn failure(&self) -> Option<String> {
-        self.chosen().and_then(|run| failed(&run.report.termination))
+        self.runs.chosen().and_then(|run| failed(&run.report.termination))
     }
-
-    /// Whether it ended at a limit or by an interruption, so that more evaluations may improve it.
-    pub fn can_continue(&self) -> bool {
-        let limits = [Termination::EvaluationLimit, Termination::TimeLimit, Termination::StoppedByObserver];
-        let limited = |run: &MeshRun| limits.contains(&run.report.termination);
-        self.mesh_runs.len() < self.meshes || self.mesh_runs.last().is_some_and(limited)
-    }
-}
-
-/// Whether no other mesh may be begun after this run.
-fn ran_out_of_time(run: &MeshRun) -> bool {
-    matches!(run.report.termination, Termination::TimeLimit) || interrupted()
 }
 
 /// Optimizes a scene, on its meshes in turn, from controls that are given, or else named by the command line or the
@@ -85,53 +43,54 @@ pub fn optimize(
     given: Option<&Vector>,
     session: &Session<'_>,
 ) -> Result<OptimizationRun, Failure> {
-    let stages = stages(&loaded.case);
-    let first = optimized_objective(&stages[0].case, &session.processes)?;
-    // What is wrong on a later mesh is said before hours of work on the first.
-    for later in stages.iter().skip(1).filter(|stage| matches!(stage.part, Part::Mesh(_))) {
-        let within = |source| SceneError::InFile { file: on(later), source: Box::new(source) };
-        check_ahead(&later.case, wanted(&later.case), &session.processes).map_err(within)?;
-    }
-    let (folder, start) = begin(&first, loaded, given, (RunKind::Optimization, &[]), session)?;
+    let driver = Driver::new(&loaded.case, &session.processes)?;
+    let (folder, start) = begin(driver.objective(), loaded, given, (RunKind::Optimization, &[]), session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
-    case_facts::announce(&first, session.arguments);
+    case_facts::announce(driver.objective(), session.arguments);
     // What starts several processes asks the others to end when one has failed, and must not make them talk.
     watch_interrupts(session.processes.is_alone());
-    let optimizer = &loaded.case.optimizer;
-    let step = optimizer.first_step.unwrap_or_else(|| first.first_step(&start));
-    let (mut mesh_runs, mut first, mut skipped) = (Vec::<MeshRun>::new(), Some(Arc::new(first)), 0);
-    for stage in &stages {
-        let shared = mesh_runs.last().filter(|_| !matches!(stage.part, Part::Mesh(_))).map(|run| &run.objective);
-        let objective = match first.take().or_else(|| shared.map(Arc::clone)) {
-            Some(objective) => objective,
-            None => Arc::new(optimized_objective(&stage.case, &session.processes)?),
-        };
-        let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
-        let Some(beginning) = beginning(stage.part, &objective, &mesh_runs, (&start, step))? else {
-            skipped += 1;
-            continue;
-        };
-        let limit = optimizer.time_limit.map(left);
-        let run = run_on_mesh(objective, stage, beginning, limit, folder.as_ref(), &session.status);
-        let run = run.inspect_err(|failure| {
-            if let (Some(folder), 2, true) = (&folder, failure.status(), mesh_runs.is_empty()) {
-                folder.abandon();
-            }
-        })?;
-        let ended = ran_out_of_time(&run);
-        mesh_runs.push(run);
-        if ended {
-            break;
+    let mut runs = Runs::default();
+    let perform = |stage| performed(stage, folder.as_ref(), &session.status);
+    let driven = driver.run((&start, &settings(&loaded.case), session.clock), &mut runs, perform);
+    driven.inspect_err(|failure| {
+        if let (Some(folder), 2, true) = (&folder, failure.status(), runs.ended.is_empty()) {
+            folder.abandon();
         }
-    }
-    Ok(OptimizationRun { mesh_runs, meshes: stages.len() - skipped, folder })
+    })?;
+    Ok(OptimizationRun { runs, folder })
 }
 
-/// "the mesh of 12×12×4 bricks"
-fn on(stage: &MeshStage) -> String {
-    format!("the mesh of {}", mesh(&stage.case.scene))
+/// Performs a run, with a journal if there is a folder, and shows its progress.
+fn performed(stage: ContactStage, folder: Option<&RunFolder>, status: &StatusLine) -> Result<ContactRun, Failure> {
+    let name = stage.label.part.folder();
+    let label = name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+    let journaled = folder.map(|folder| folder.journaled(&*stage.objective, name.as_deref())).transpose()?;
+    let replayed = journaled.as_ref().map_or(0, Journaled::held);
+    let (most, limit) = (stage.config.max_evaluations, stage.config.max_seconds);
+    let mut progress = Progress::new(&label, most, limit, replayed, status.clone());
+    let mut show = |new: &[IterationRecord]| new.iter().try_for_each(|record| progress.observe(record));
+    let report = match &journaled {
+        None => stage.run(&*stage.objective, &mut |_, new| show(new))?,
+        Some(journaled) => {
+            let mut said = 0;
+            let mut report = stage.run(journaled, &mut |_, new| {
+                let shown = show(new);
+                // What the journal warns of is said as soon as it does.
+                let warnings = journaled.warnings();
+                warnings[said..].iter().for_each(|words| notice(&format!("warning: {words}")));
+                said = warnings.len();
+                shown
+            })?;
+            journaled.complete(&mut report);
+            report
+        }
+    };
+    let is_kept = journaled.as_ref().is_none_or(Journaled::is_complete);
+    drop(journaled);
+    let is_last = interrupted() || report.termination == Termination::TimeLimit;
+    Ok(ContactRun { stage, report, replayed, is_kept, is_last })
 }
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is
@@ -186,7 +145,7 @@ const SERIES: u64 = 40;
 /// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two
 /// states, or of a series if it is asked for, figures, Jacobians of pressures and gaps, and the rest. A comparison
 /// writes two runs at once; the rows of a study prove their own room.
-fn room(stages: &[MeshStage], kind: RunKind, series: bool) -> u64 {
+fn room(stages: &[PlannedRun], kind: RunKind, series: bool) -> u64 {
     let bytes = stages.iter().map(|stage| {
         let size = SceneSize::of(&stage.case.scene);
         let nodes = size.sum(|body| body.pieces * body.piece_nodes) as u64;

@@ -4,19 +4,16 @@ use crate::commands::case_facts;
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
 use crate::commands::numbers::{number, raised};
-use crate::commands::optimize::fairness::bending_of;
-use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::optimize::stages::Part;
-use crate::commands::optimize::ways::AGREES;
 use crate::commands::report::found_label;
 use crate::commands::scene_words;
-use crate::commands::shape_facts::{self, is_proved};
+use crate::commands::shape_facts;
 use crate::commands::solved_shape::{SolvedShape, solver_facts};
 use contact::plausibility::Warning;
 use contact::scene::Scene;
 use contact::solvers::Usage;
 use nonsmooth::{Certificate, IterationRecord, Report, Vector};
 use scene_file::CaseScene;
+use scene_file::optimization::{ContactRun, ContactStage, Part, Runs, bending_of};
 use serde_json::json;
 
 /// One evaluation; its `objective` is null if it failed, its `seconds` count from the start, its `products` are those
@@ -38,10 +35,10 @@ fn course(record: &IterationRecord) -> serde_json::Value {
 }
 
 /// One of several runs: a mesh of a coarse-to-fine optimization, a start, an attempt.
-fn stage(run: &MeshRun) -> serde_json::Value {
+fn stage(run: &ContactRun) -> serde_json::Value {
     json!({
-        "run": run.part.folder(),
-        "mesh": bricks(&run.objective.solver().problem().scene),
+        "run": run.stage.label.part.folder(),
+        "mesh": bricks(&run.stage.objective.solver().problem().scene),
         "objective_start": run.report.start_value,
         "objective": run.report.value,
         "evaluations": run.report.counts.evaluations,
@@ -59,13 +56,13 @@ fn bricks(scene: &Scene) -> Option<[usize; 3]> {
 /// How a run ended.
 pub fn ending(report: &Report) -> serde_json::Value {
     let termination = &report.termination;
-    json!({ "reason": termination, "text": termination.to_string(), "confirmed": is_proved(report) })
+    json!({ "reason": termination, "text": termination.to_string(), "confirmed": report.is_proved() })
 }
 
 /// Whether the end of a run is proved, and if not, why and what to do: a line of its own.
 pub fn proof(report: &Report) -> String {
     let termination = &report.termination;
-    match is_proved(report) {
+    match report.is_proved() {
         true => format!("Proved: {termination}"),
         false => format!("Not proved: {termination}; {}", report.advice()),
     }
@@ -81,18 +78,11 @@ const LEAST_SCALE: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 
 /// Number of different values of Θ at confirmed ends.
-fn optima(runs: &[MeshRun]) -> usize {
+fn optima(runs: &[ContactRun]) -> usize {
     let decrease = runs.iter().map(|run| run.report.start_value - run.report.value).fold(0.0, f64::max);
     // The end of an attempt is none.
-    let confirmed = runs.iter().filter(|run| is_proved(&run.report) && !run.part.is_attempt());
+    let confirmed = runs.iter().filter(|run| run.report.is_proved() && !run.stage.label.part.is_attempt());
     different(confirmed.map(|run| run.report.value).collect(), decrease)
-}
-
-/// How many attempts have come to the Θ found, of how many; none without attempts.
-fn agreement(runs: &[MeshRun], found: f64) -> Option<[usize; 2]> {
-    let attempts = || runs.iter().filter(|run| run.part.is_attempt());
-    let agreeing = attempts().filter(|run| run.report.value - found <= AGREES * found.abs()).count();
-    Some([agreeing, attempts().count()]).filter(|[_, all]| *all > 0)
 }
 
 /// Number of values that differ by more than runs with this largest decrease resolve.
@@ -108,11 +98,9 @@ fn different(mut values: Vec<f64>, decrease: f64) -> usize {
 /// An optimization that has ended, with what its facts are made of.
 pub struct Ended<'a> {
     /// The run that it is reported by: the last mesh, or the best start.
-    pub last: &'a MeshRun,
+    pub last: &'a ContactRun,
     /// All runs, in order.
-    pub runs: &'a [MeshRun],
-    /// Number of runs asked for.
-    pub meshes: usize,
+    pub runs: &'a Runs,
     /// The shape at the start of the run that it is reported by, or of the first mesh, and the shape found.
     pub shapes: &'a [SolvedShape; 2],
     /// The load cases of the scene.
@@ -130,7 +118,7 @@ impl Ended<'_> {
     /// # Errors
     /// [`Failure::Computation`] for a value that has no JSON.
     pub fn facts(&self) -> Result<Facts, Failure> {
-        let MeshRun { report, objective, .. } = self.last;
+        let ContactRun { stage: ContactStage { objective, .. }, report, .. } = self.last;
         let shapes = self.shapes.each_ref();
         let scene = &objective.solver().problem().scene;
         let lead = vec![format!("{}: {}", scene.name, shape_facts::found(objective, shapes)), proof(report)];
@@ -164,12 +152,12 @@ impl Ended<'_> {
     /// The load cases at both ends.
     fn cases(&self, columns: Vec<String>) -> Result<Group, Failure> {
         let proof = self.last.report.certificate.as_ref().and_then(|certificate| certificate.composite.as_ref());
-        case_facts::cases(&self.last.objective, self.cases, (columns, &self.shapes.each_ref()), proof)
+        case_facts::cases(&self.last.stage.objective, self.cases, (columns, &self.shapes.each_ref()), proof)
     }
 
     /// What the limits cost; nothing without one.
     fn limits(&self) -> Result<Vec<Fact>, Failure> {
-        let MeshRun { report, objective, .. } = self.last;
+        let ContactRun { stage: ContactStage { objective, .. }, report, .. } = self.last;
         let [start, end] = self.shapes;
         let (mut keys, mut facts) = (Vec::new(), Vec::new());
         for ((found, start), end) in report.constraints.iter().zip(&start.limits).zip(&end.limits) {
@@ -214,10 +202,12 @@ impl Ended<'_> {
 
     /// The facts of several runs.
     fn stages(&self) -> Result<Group, Failure> {
-        let several = || self.runs.iter().filter(|run| run.part != Part::Whole || self.runs.len() > 1);
-        let fact = |run: &MeshRun| {
-            let (report, name) = (&run.report, run.part.folder().unwrap_or("from the best".into()).replace('_', " "));
-            let scene = &run.objective.solver().problem().scene;
+        let several =
+            || self.runs.ended.iter().filter(|run| run.stage.label.part != Part::Whole || self.runs.ended.len() > 1);
+        let fact = |run: &ContactRun| {
+            let (report, name) =
+                (&run.report, run.stage.label.part.folder().unwrap_or("from the best".into()).replace('_', " "));
+            let scene = &run.stage.objective.solver().problem().scene;
             let values = vec![
                 scene_words::mesh(scene).into(),
                 report.start_value.into(),
@@ -242,18 +232,18 @@ impl Ended<'_> {
 
     /// The facts of the course.
     fn course(&self) -> Result<Group, Failure> {
-        let MeshRun { report, replayed, .. } = self.last;
+        let ContactRun { report, replayed, .. } = self.last;
         let (counts, trials) = (&report.counts, &report.counts.trials);
         let first = report.history.first().map_or(0.0, |record| record.seconds);
         let slowest = report.history.windows(2).map(|pair| pair[1].seconds - pair[0].seconds).fold(first, f64::max);
-        let all: f64 = self.runs.iter().map(|run| run.report.seconds).sum();
+        let all: f64 = self.runs.ended.iter().map(|run| run.report.seconds).sum();
         let count = |key, name: &str, count: usize| Fact::new(key, name, count, "").detail();
         let mut facts = vec![
             Fact::new("evaluations", "evaluations", counts.evaluations, "").meaning(
                 "a contact problem with a subgradient each; a failed one could not be computed and shortened the step",
             ),
             Fact::new("seconds", "time of the whole run", all, "s"),
-            Fact::new("", "constraints attained", self.last.active_constraints(), ""),
+            Fact::new("", "constraints attained", active_constraints(self.last), ""),
             Fact::json("states", &counts.evaluations)?,
             count("jacobians", "Jacobians", counts.jacobians),
             count("serious_steps", "serious steps", counts.serious),
@@ -282,14 +272,14 @@ impl Ended<'_> {
             Fact::json("course", &report.history.iter().map(course).collect::<Vec<_>>())?,
         ];
         facts.extend(self.ways());
-        if self.runs.iter().filter(|run| run.part != Part::Whole).count() > 1 {
+        if self.runs.ended.iter().filter(|run| run.stage.label.part != Part::Whole).count() > 1 {
             facts.push(
-                Fact::new("optima", "different optima", optima(self.runs), "")
+                Fact::new("optima", "different optima", optima(&self.runs.ended), "")
                     .meaning("different values of Θ at proved ends of the runs"),
             );
         }
-        if self.runs.len() < self.meshes {
-            facts.push(Fact::new("", "runs begun", format!("{} of {}", self.runs.len(), self.meshes), ""));
+        if self.runs.ended.len() < self.runs.asked {
+            facts.push(Fact::new("", "runs begun", format!("{} of {}", self.runs.ended.len(), self.runs.asked), ""));
         }
         Ok(Group::new("Course of the optimization", facts).with_words(proof(report) + "."))
     }
@@ -297,17 +287,16 @@ impl Ended<'_> {
     /// How attempts agree, and what fairness has changed.
     fn ways(&self) -> Vec<Fact> {
         let mut facts = Vec::new();
-        if let Some([agreeing, all]) = agreement(self.runs, self.last.report.value) {
+        if let Some([agreeing, all]) = self.runs.agreement(self.last.report.value) {
             let words = format!("{agreeing} of {all}");
             let meaning = "short runs with all controls, with a coarse net of controls and from other starts, those that came within \
                            3 % of the Θ found; the whole run begins at the best of them";
             facts.push(Fact::new("attempts", "attempts that agree", words, "").meaning(meaning));
-            let evaluations: usize = self.runs.iter().map(|run| run.report.counts.evaluations).sum();
-            facts.push(Fact::new("all_evaluations", "evaluations of all runs", evaluations, ""));
+            facts.push(Fact::new("all_evaluations", "evaluations of all runs", self.runs.evaluations(), ""));
         }
-        let MeshRun { bending_before, objective, report, .. } = self.last;
-        if let (Some(before), Some(after)) = (bending_before, bending_of(objective, &report.solution)) {
-            let words = format!("{} -> {}", number(*before), number(after));
+        let ContactRun { stage: ContactStage { label, objective, .. }, report, .. } = self.last;
+        if let (Some(before), Some(after)) = (label.bending_before, bending_of(objective, &report.solution)) {
+            let words = format!("{} -> {}", number(before), number(after));
             let meaning = "of shapes that are as good, the one that bends least was taken: controls that the objective does not see are \
                            smooth";
             facts.push(Fact::new("bending", "bending", words, "").meaning(meaning));
@@ -321,6 +310,21 @@ impl Ended<'_> {
         let warnings = all_warnings(&self.last.report, self.checks);
         facts.extend(closing_facts(&warnings, &self.left_out, self.processes.as_ref())?);
         Ok(Group::new("", facts))
+    }
+}
+
+/// The constraints of the shape that the solution of a run attains, in words.
+fn active_constraints(run: &ContactRun) -> String {
+    /// As many constraints as a line holds.
+    const MAX_NAMED_CONSTRAINTS: usize = 3;
+    let active = run.stage.objective.solver().problem().admissible.active(&run.report.solution);
+    match active.len() {
+        0 => "no constraint of the shape".into(),
+        count if count > MAX_NAMED_CONSTRAINTS => {
+            let named = active[..MAX_NAMED_CONSTRAINTS].join("; ");
+            format!("{named}; {} more", count - MAX_NAMED_CONSTRAINTS)
+        }
+        _ => active.join("; "),
     }
 }
 

@@ -6,13 +6,13 @@ use crate::commands::facts::Facts;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, json};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::{Ended, all_warnings};
 use crate::commands::report::folder::ReportFolder;
 use crate::commands::report::sections::found_label;
 use crate::commands::report::{captions, gallery, pages, tables};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
+use scene_file::optimization::{ContactRun, ContactStage};
 
 /// The files of an optimization.
 pub fn write_optimization(
@@ -22,7 +22,7 @@ pub fn write_optimization(
     facts: &Facts,
 ) -> Result<(), Failure> {
     let shapes = ended.shapes;
-    let MeshRun { objective, report, .. } = ended.last;
+    let ContactRun { stage: ContactStage { objective, .. }, report, .. } = ended.last;
     let mut out = ReportFolder::new(folder, loaded, objective);
     let layout = Layout::of(&objective.solver().problem().scene);
     let written = controls::written(report.solution.as_slice(), layout)?;
@@ -61,7 +61,7 @@ pub fn write_comparison(
     comparison: &Comparison<'_>,
     facts: &Facts,
 ) -> Result<(), Failure> {
-    let mut out = ReportFolder::new(folder, loaded, &comparison.runs[0].objective);
+    let mut out = ReportFolder::new(folder, loaded, &comparison.runs[0].stage.objective);
     for part in COMPARED {
         out.announce(&format!("{part}/report.html"), "the optimization itself, with its files");
     }

@@ -7,7 +7,6 @@ use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{export_command, limits, pictures};
 use crate::commands::scene_words::{friction, mesh};
-use crate::commands::shape_facts::is_proved;
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::StageSeconds;
@@ -18,8 +17,8 @@ use std::path::Path;
 
 /// The report of an optimization.
 pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Path) -> Page {
-    let (objective, shapes) = (&ended.last.objective, ended.shapes);
-    let proved = if is_proved(&ended.last.report) { "proved" } else { "unproved" };
+    let (objective, shapes) = (&ended.last.stage.objective, ended.shapes);
+    let proved = if ended.last.report.is_proved() { "proved" } else { "unproved" };
     let what = match (shapes[1].keeps_limits(), is_better(shapes[0].value, shapes[1].value)) {
         (false, _) => "a shape outside the limits".to_owned(),
         (true, true) => format!("optimized shape, {proved}"),
@@ -48,8 +47,8 @@ pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShap
 
 /// The report of a comparison with and without friction.
 pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> Page {
-    let objective = &comparison.runs[0].objective;
-    let confirmed = comparison.runs.iter().all(|run| is_proved(&run.report));
+    let objective = &comparison.runs[0].stage.objective;
+    let confirmed = comparison.runs.iter().all(|run| run.report.is_proved());
     let caveat = if confirmed { "" } else { " Not both runs ended with a proof of optimality." };
     let lead = facts.lead.first().cloned().unwrap_or_default() + caveat;
     let mut table = facts.groups[0].section();

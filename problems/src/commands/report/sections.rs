@@ -3,7 +3,6 @@
 use crate::commands::folder::{SCENE, quoted};
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::number;
-use crate::commands::shape_facts::is_proved;
 use crate::commands::solved_shape::SolvedShape;
 use figures::page::{Block, Section};
 use nonsmooth::Report;
@@ -16,7 +15,7 @@ pub fn pictures(blocks: Vec<Block>) -> Section {
 
 /// What the shape that an optimization ended at is called.
 pub fn found_label(report: &Report) -> &'static str {
-    match (report.is_feasible(), is_proved(report)) {
+    match (report.is_feasible(), report.is_proved()) {
         (false, _) => "outside limits",
         (true, true) => "optimum",
         (true, false) => "best found",

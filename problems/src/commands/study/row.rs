@@ -9,8 +9,7 @@ use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::report::{ContactSurface, Relief};
 use crate::commands::shape_facts::is_better;
-use crate::commands::shape_facts::is_proved;
-use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
+use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, checks};
 use crate::commands::study::plan::{RowOptions, options};
 use contact::equilibrium::StatusCounts;
 use contact::solvers::Wanted;
@@ -218,8 +217,8 @@ pub fn refusal(
     session: &Session<'_>,
 ) -> Option<Failure> {
     let checked = stated(loaded, words, (has_start, None)).and_then(|(part, _)| {
-        let wanted = if optimized { wanted(&part.case) } else { Wanted::States };
-        Ok(check_ahead(&part.case, wanted, &session.processes)?)
+        let wanted = if optimized { part.case.wanted() } else { Wanted::States };
+        Ok(part.case.check_ahead(wanted, &session.processes)?)
     });
     checked.err()
 }
@@ -273,21 +272,20 @@ fn optimum(
         return Err(Failure::Computation(reason));
     }
     let (_, [first, last]) = report(&run, part, session, None)?;
-    let chosen = run.chosen().ok_or_else(|| Failure::computation("no mesh was begun"))?;
-    let evaluations = || run.mesh_runs.iter().map(|run| run.report.counts.evaluations);
+    let chosen = run.runs.chosen().ok_or_else(|| Failure::computation("no mesh was begun"))?;
     let optimization = Optimized {
         objective_start: first.value,
         peak_pressure_start: first.peak_pressure,
-        evaluations: evaluations().sum(),
-        most_evaluations: evaluations().max().unwrap_or(0),
+        evaluations: run.runs.evaluations(),
+        most_evaluations: run.runs.ended.iter().map(|run| run.report.counts.evaluations).max().unwrap_or(0),
         termination: chosen.report.termination.to_string(),
-        confirmed: is_proved(&chosen.report),
+        confirmed: chosen.report.is_proved(),
         had_to_move: !first.keeps_limits(),
-        can_continue: run.can_continue(),
+        can_continue: run.runs.can_continue(),
     };
     let objective = chosen.report.value;
-    let mut solved = solved(&chosen.objective, &last, session)?;
-    solved.warnings.extend(chosen.standstill(&run.mesh_runs, &last)?.map(|warning| warning.code.to_owned()));
+    let mut solved = solved(&chosen.stage.objective, &last, session)?;
+    solved.warnings.extend(run.runs.standstill((&last.controls, &last.states))?.map(|warning| warning.code.to_owned()));
     Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved }))
 }
 

@@ -1,14 +1,12 @@
 //! Where the runs of an optimization begin: the start of the scene, other starts, or what earlier runs have found.
 
-use crate::commands::failure::Failure;
-use crate::commands::optimize::coarse_net::{Beginning, coarse_directions};
-use crate::commands::optimize::fairness::fair_shape;
-use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::optimize::stages::{Attempt, Part};
-use crate::commands::shape_facts::is_proved;
-use crate::commands::solved_shape::ContactObjective;
+use crate::optimization::coarse_net::coarse_directions;
+use crate::optimization::fairness::fair_shape;
+use crate::optimization::runs::{AGREES, ContactRun, best, violation};
+use crate::optimization::{Attempt, OptimizationError, Part};
+use contact::contact_objective::ContactObjective;
 use nonsmooth::Vector;
-use nonsmooth::qp::project;
+use nonsmooth::runs::moved_start;
 use nonsmooth::verify::seeded_direction;
 
 /// First step of a run that goes on from a shape already optimized, in first steps of the first run. The gap there says
@@ -19,42 +17,17 @@ const LATER_FIRST_STEP: f64 = 0.2;
 /// Largest change of a control at a further start, in first steps: several times the length on which contact changes.
 const CHANGE: f64 = 4.0;
 
-/// The relative violation of the limits at the end of a run; 0 where all are kept.
-fn violation(run: &MeshRun) -> f64 {
-    let violated = run.report.constraints.iter().filter(|limit| !limit.satisfied);
-    violated.map(|limit| limit.violation).fold(0.0, f64::max)
+/// Where a run begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beginning {
+    pub controls: Vector,
+    pub first_step: f64,
+    /// The bending of the shape that a fairer one has replaced.
+    pub bending_before: Option<f64>,
 }
-
-/// The best of some runs: least violation of the limits, then least Θ.
-pub fn best<'r>(runs: impl Iterator<Item = &'r MeshRun>) -> Option<&'r MeshRun> {
-    runs.min_by(|a, b| violation(a).total_cmp(&violation(b)).then(a.report.value.total_cmp(&b.report.value)))
-}
-
-/// Relative difference of Θ that a fairer shape may cost: shapes are not made more exactly.
-const AS_GOOD: f64 = 1e-4;
-
-/// The run that an optimization is reported by: the last one, or the best one of several starts, or of attempts without
-/// a later run. A run from a fairer shape counts if its end is as good.
-pub fn chosen(runs: &[MeshRun]) -> Option<&MeshRun> {
-    let last = runs.last()?;
-    let others = &runs[..runs.len() - 1];
-    match last.part {
-        Part::Start(_) | Part::Try(_) => best(runs.iter()),
-        Part::Fair => others.last().filter(|whole| !is_as_good(last, whole)).or(Some(last)),
-        Part::Whole | Part::Mesh(_) => Some(last),
-    }
-}
-
-fn is_as_good(fair: &MeshRun, other: &MeshRun) -> bool {
-    let (gain, same) = (other.report.value - fair.report.value, AS_GOOD * other.report.value.abs());
-    violation(fair) <= violation(other) && (gain > same || gain >= -same && is_proved(&fair.report))
-}
-
-/// Relative difference of Θ within which two attempts agree: about their tolerance.
-pub const AGREES: f64 = 0.03;
 
 /// Whether the coarse net leads to no other Θ than the direct way, which has come to its end: not worth to be refined.
-fn is_outdone(before: &[MeshRun]) -> bool {
+fn is_outdone(before: &[ContactRun]) -> bool {
     let [direct, coarse, ..] = before else { return false };
     let bar = direct.report.value - AGREES * direct.report.value.abs();
     direct.report.termination.is_stationary() && violation(direct) <= violation(coarse) && coarse.report.value >= bar
@@ -64,16 +37,17 @@ fn is_outdone(before: &[MeshRun]) -> bool {
 /// the part is not worth a run.
 ///
 /// # Errors
-/// [`Failure::Computation`] where a start cannot be moved into the admissible set, or from the contact solver.
+/// [`OptimizationError::Start`] where a start cannot be moved into the admissible set, and
+/// [`OptimizationError::Derivatives`] of the contact solver.
 pub fn beginning(
     part: Part,
     objective: &ContactObjective,
-    before: &[MeshRun],
+    before: &[ContactRun],
     (start, first_step): (&Vector, f64),
-) -> Result<Option<Beginning>, Failure> {
+) -> Result<Option<Beginning>, OptimizationError> {
     let at =
         |controls: Vector, share: f64| Beginning { controls, first_step: share * first_step, bending_before: None };
-    let later = |run: &MeshRun, share: f64| at(run.report.solution.clone(), share);
+    let later = |run: &ContactRun, share: f64| at(run.report.solution.clone(), share);
     Ok(Some(match (part, before.last()) {
         (Part::Start(number @ 2..) | Part::Try(Attempt::Start(number)), _) => {
             at(other_start(objective, (start, first_step), number)?, 1.0)
@@ -84,7 +58,8 @@ pub fn beginning(
         (Part::Whole, Some(last)) => {
             let best = best(before.iter()).unwrap_or(last);
             // All other controls have yet to follow those of the coarse net.
-            let plain = later(best, if best.part == Part::Try(Attempt::Coarse) { 1.0 } else { LATER_FIRST_STEP });
+            let plain =
+                later(best, if best.stage.label.part == Part::Try(Attempt::Coarse) { 1.0 } else { LATER_FIRST_STEP });
             fairer(objective, best, first_step)?.unwrap_or(plain)
         }
         (Part::Fair, Some(last)) => return fairer(objective, last, first_step),
@@ -93,7 +68,11 @@ pub fn beginning(
 }
 
 /// A beginning at a fairer shape than that where a run has ended; none unless it has ended where Θ is stationary.
-fn fairer(objective: &ContactObjective, run: &MeshRun, first_step: f64) -> Result<Option<Beginning>, Failure> {
+fn fairer(
+    objective: &ContactObjective,
+    run: &ContactRun,
+    first_step: f64,
+) -> Result<Option<Beginning>, OptimizationError> {
     if !run.report.termination.is_stationary() || !run.report.is_feasible() {
         return Ok(None);
     }
@@ -112,7 +91,7 @@ fn other_start(
     objective: &ContactObjective,
     (start, first_step): (&Vector, f64),
     number: usize,
-) -> Result<Vector, Failure> {
+) -> Result<Vector, OptimizationError> {
     let set = objective.solver().problem().admissible.polyhedron();
     let random = |count: usize| seeded_direction(count, number as u64);
     let direction = match (coarse_directions(objective)?, number) {
@@ -126,6 +105,5 @@ fn other_start(
     let size = direction.amax();
     let follows = number == 2 && size.is_finite() && objective.solver().problem().scene.heights().is_some();
     let length = if follows { size } else { CHANGE * first_step };
-    let moved = start + direction * (length / size.max(f64::MIN_POSITIVE));
-    project(set, &moved).map_err(|error| Failure::Computation(format!("start {number}: {error}")))
+    moved_start(set, start, &direction, length).map_err(|source| OptimizationError::Start { number, source })
 }

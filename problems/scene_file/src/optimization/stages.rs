@@ -1,23 +1,33 @@
 //! The runs of an optimization: one, one per growing mesh, one per start, or attempts with a run from the best of them.
 
-use crate::commands::optimize::coarse_net::has_coarse_net;
+use crate::optimization::coarse_net::has_coarse_net;
+use crate::{Case, ContinuationMesh, MethodName, default_subdomains};
 use contact::scene::BodyScene;
 use nonsmooth::Journal;
-use scene_file::{Case, MethodName, default_subdomains};
 use std::path::Path;
 
 /// What a run is within its optimization.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
+    /// The only run, or the one that goes on from the best attempt.
     Whole,
-    /// One of several growing meshes, by its bricks along the axis that has most.
-    Mesh(usize),
+    /// One of several growing meshes.
+    Mesh(MeshName),
     /// One of several starts, counted from 1: that of the scene, then others.
     Start(usize),
     /// A short attempt; the whole run goes on from the best of all.
     Try(Attempt),
     /// From a fairer shape that is as good as the one where the whole run has ended, if there is one.
     Fair,
+}
+
+/// One of several growing meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeshName {
+    /// Blocks, by the bricks along the axis that has most.
+    Bricks(usize),
+    /// The mesh of a file, counted from 1.
+    File(usize),
 }
 
 /// A way to a shape that is worth to go on from.
@@ -38,7 +48,8 @@ impl Part {
     pub fn folder(self) -> Option<String> {
         match self {
             Self::Whole => None,
-            Self::Mesh(bricks) => Some(format!("stage_{bricks}")),
+            Self::Mesh(MeshName::Bricks(bricks)) => Some(format!("stage_{bricks}")),
+            Self::Mesh(MeshName::File(number)) => Some(format!("mesh_{number}")),
             Self::Start(number) => Some(format!("start_{number}")),
             Self::Try(Attempt::Direct) => Some("try_direct".into()),
             Self::Try(Attempt::Coarse) => Some("try_coarse".into()),
@@ -54,11 +65,12 @@ impl Part {
     }
 }
 
-/// One run of an optimization.
+/// A run of an optimization, before it begins.
 #[derive(Debug, Clone)]
-pub struct MeshStage {
+pub struct PlannedRun {
     /// What it is within the optimization.
     pub part: Part,
+    /// What it optimizes.
     pub case: Case,
 }
 
@@ -78,23 +90,28 @@ fn attempts(case: &Case) -> Vec<Attempt> {
 /// The runs of a case, in order: attempts, one from the best of them and one from a fairer shape, or one per mesh of
 /// its continuation, else one per start. On the meshes of a continuation, the axis with most bricks of all blocks gets
 /// the number asked for, and the others keep their proportion to it.
-pub fn stages(case: &Case) -> Vec<MeshStage> {
+pub fn stages(case: &Case) -> Vec<PlannedRun> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;
     let attempts = attempts(case);
     if !attempts.is_empty() {
         let parts = attempts.into_iter().map(Part::Try).chain([Part::Whole, Part::Fair]);
-        return parts.map(|part| MeshStage { part, case: case.clone() }).collect();
+        return parts.map(|part| PlannedRun { part, case: case.clone() }).collect();
     }
     if meshes.is_empty() && starts > 1 {
-        return (1..=starts).map(|start| MeshStage { part: Part::Start(start), case: case.clone() }).collect();
+        return (1..=starts).map(|start| PlannedRun { part: Part::Start(start), case: case.clone() }).collect();
     }
     if meshes.is_empty() {
-        return vec![MeshStage { part: Part::Whole, case: case.clone() }];
+        return vec![PlannedRun { part: Part::Whole, case: case.clone() }];
+    }
+    if !case.meshes.is_empty() {
+        let part = |index: usize| Part::Mesh(MeshName::File(index + 1));
+        let meshes = case.meshes.iter().cloned().enumerate();
+        return meshes.map(|(index, case)| PlannedRun { part: part(index), case }).collect();
     }
     let blocks = case.scene.bodies.iter().filter_map(BodyScene::block);
     let longest = blocks.flat_map(|block| block.bricks).max().unwrap_or(1);
-    let stage = |&bricks: &usize| {
+    let stage = |bricks: usize| {
         let case = case.clone().with_blocks(|blocks| {
             let scaled = |count: usize| ((count * bricks) as f64 / longest as f64).round().max(1.0) as usize;
             blocks.bricks = blocks.bricks.map(scaled);
@@ -103,37 +120,13 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
                 blocks.subdomains = blocks.bricks.map(default_subdomains);
             }
         });
-        MeshStage { part: Part::Mesh(bricks), case }
+        PlannedRun { part: Part::Mesh(MeshName::Bricks(bricks)), case }
     };
-    meshes.iter().map(stage).collect()
+    meshes.iter().filter_map(ContinuationMesh::bricks).map(stage).collect()
 }
 
 /// The last of them that the run in a folder has begun.
-pub fn last_begun(case: &Case, folder: &Path) -> Option<MeshStage> {
-    let begun = |stage: &MeshStage| stage.part.folder().is_none_or(|name| Journal::exists(folder.join(name)));
+pub fn last_begun(case: &Case, folder: &Path) -> Option<PlannedRun> {
+    let begun = |stage: &PlannedRun| stage.part.folder().is_none_or(|name| Journal::exists(folder.join(name)));
     stages(case).into_iter().rev().find(begun)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use scene_file::SceneFile;
-    use std::path::Path;
-
-    #[test]
-    fn meshes_keep_their_proportions() {
-        let text = include_str!("../../../scenes/thin_layer.toml");
-        let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
-        let mut case = Case::new(&file, Path::new("")).expect("an example");
-        let parts = |case: &Case| stages(case).iter().map(|stage| stage.part).collect::<Vec<_>>();
-        let [direct, coarse, refined] = [Attempt::Direct, Attempt::Coarse, Attempt::Refined].map(Part::Try);
-        assert_eq!(parts(&case), [direct, coarse, refined, Part::Whole, Part::Fair]);
-        case.optimizer.single = true;
-        assert_eq!(parts(&case), [Part::Whole]);
-        case.optimizer.continuation = vec![6, 12, 25];
-        let blocks = |stage: &MeshStage| stage.case.scene.bodies[0].block().expect("a block").clone();
-        let meshes: Vec<_> =
-            stages(&case).iter().map(|stage| (blocks(stage).bricks, blocks(stage).subdomains)).collect();
-        assert_eq!(meshes, [([6, 6, 2], [2, 2, 1]), ([12, 12, 4], [2, 2, 1]), ([25, 25, 8], [5, 5, 2])]);
-    }
 }

@@ -6,12 +6,11 @@
 //! G is the Jacobian of the pressures σ, case by case, s > 0 are the gaps of open nodes with their Jacobian S: to first
 //! order all nodes that carry go on as they do, and no other one begins to. Θ does not see what is left.
 
-use crate::commands::failure::Failure;
-use crate::commands::solved_shape::ContactObjective;
+use contact::contact_objective::ContactObjective;
 use contact::shape::bending;
 use nonsmooth::composite::{Linearization, LinearizationRequest, Linearized};
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric, project};
-use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, Polyhedron, Request, Vector};
+use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, OracleError, Polyhedron, Request, Vector};
 
 /// ε, the change of a pressure over the largest one that counts as none, and that of any other output over itself.
 const SAME: f64 = 1e-3;
@@ -44,13 +43,13 @@ fn matrix(objective: &ContactObjective) -> Option<Matrix> {
 /// where Θ is no function of the pressures. Takes an evaluation with a Jacobian.
 ///
 /// # Errors
-/// [`Failure::Computation`] from the contact solver.
-pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, Failure> {
+/// [`OracleError`] of the contact solver.
+pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, OracleError> {
     let Some(matrix) = matrix(objective) else { return Ok(None) };
     let accuracy = Accuracy::relative(1e-4).unwrap_or(Accuracy::TIGHTEST);
     let wanted = LinearizationRequest { accuracy, below: f64::INFINITY };
     let request = Request { linearization: Some(wanted), ..Request::tight(controls) };
-    let evaluation = objective.evaluate(&request).map_err(Failure::computation)?.into_evaluation();
+    let evaluation = objective.evaluate(&request)?.into_evaluation();
     let Linearized::Known(linearization) = &evaluation.linearization else { return Ok(None) };
     let set = objective.solver().problem().admissible.polyhedron();
     let sizes = objective.cost().sizes(&linearization.outputs);

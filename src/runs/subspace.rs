@@ -1,7 +1,7 @@
 //! An objective on an affine subspace: x = origin + D β with the variables β.
 
-use nonsmooth::composite::{Linearized, OuterFunction};
-use nonsmooth::{
+use crate::composite::{Linearized, OuterFunction};
+use crate::{
     Answer, ConstraintKind, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError, Polyhedron, Report,
     Request, Vector,
 };
@@ -98,31 +98,5 @@ impl<O: NonsmoothObjective> NonsmoothObjective for Subspace<O> {
             Answer::Accurate(evaluation) => Answer::Accurate(self.restricted(evaluation)),
             Answer::NoDescent(evaluation) => Answer::NoDescent(self.restricted(evaluation)),
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, composite::Maximum};
-
-    /// max(x², 2 y + 3 z) on the line (1, 1, 0) + β (1, −1, 0), with its minimum where x² = 2 y.
-    #[test]
-    fn a_line_through_a_kink() {
-        let theta = CompositeFunction::new(3, Maximum, |p: &Vector| {
-            let rows = [2.0 * p[0], 0.0, 0.0, 0.0, 2.0, 3.0];
-            (Vector::from_vec(vec![p[0] * p[0], 2.0 * p[1] + 3.0 * p[2]]), Matrix::from_row_slice(2, 3, &rows))
-        });
-        let origin = Vector::from_vec(vec![1.0, 1.0, 0.0]);
-        let line = Subspace::new(theta, origin, Matrix::from_vec(3, 1, vec![1.0, -1.0, 0.0]));
-        let lower = Vector::from_vec(vec![-9.0, -9.0, -1.0]);
-        let whole = Polyhedron::boxed(lower, Vector::from_element(3, 9.0)).expect("a box");
-        let set = line.set(&whole).expect("the same variables");
-        let mut method = BundleTrust::new(BundleTrustConfig::default()).expect("defaults").constraints(set);
-        let report = line.reported(method.minimize(&line, Vector::zeros(1)).expect("a line"));
-        // x² = 2 (2 − x).
-        let x = 5.0_f64.sqrt() - 1.0;
-        assert!((report.solution[0] - x).abs() < 1e-6 && (report.solution[1] - 2.0 + x).abs() < 1e-6, "{report}");
-        assert!(report.solution.len() == 3 && report.certificate.is_none());
     }
 }

@@ -1,22 +1,13 @@
-//! A coarse net of controls within those of a height surface, and where a run begins.
+//! A coarse net of controls within those of a height surface.
 
-use crate::commands::failure::Failure;
-use crate::commands::solved_shape::ContactObjective;
+use contact::contact_objective::ContactObjective;
+use contact::error::SceneError;
 use contact::shape::HeightShape;
-use nonsmooth::{Matrix, Vector};
+use nonsmooth::Matrix;
 
 /// Control points per axis of a coarse net: a bowl or a saddle, with every slope. Nets of 4 were measured to end higher
 /// on the seat of the tutorial, and nets of 3 and then 4 to take more evaluations for the same ends.
 const COARSE: usize = 3;
-
-/// Where a run begins.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Beginning {
-    pub controls: Vector,
-    pub first_step: f64,
-    /// The bending of the shape that a fairer one has replaced.
-    pub bending_before: Option<f64>,
-}
 
 /// Whether a height surface has more control points than a coarse net.
 pub fn has_coarse_net(heights: &HeightShape) -> bool {
@@ -26,8 +17,8 @@ pub fn has_coarse_net(heights: &HeightShape) -> bool {
 /// The controls of a coarse net within those of the surface, as directions; none for other shapes.
 ///
 /// # Errors
-/// [`Failure::Input`] for a surface that is none.
-pub fn coarse_directions(objective: &ContactObjective) -> Result<Option<Matrix>, Failure> {
+/// [`SceneError`] for a surface that is none.
+pub fn coarse_directions(objective: &ContactObjective) -> Result<Option<Matrix>, SceneError> {
     let Some(heights) = objective.solver().problem().scene.heights() else { return Ok(None) };
     let surface = heights.surface()?;
     Ok(Some(surface.refinement(&surface.coarser(COARSE)?)?))
