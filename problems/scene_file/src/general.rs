@@ -12,7 +12,7 @@ use contact::scene::{
     AreaKind, Block, BodyFace, BodyScene, ContactKind, ContactScene, CounterSurface, Geometry, Master, MeshGeometry,
     NormalKind, Scene,
 };
-use contact::shape::{HeightShape, ShapeScene, ShapedFace};
+use contact::shape::{LatticeShape, ShapedFace};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -47,7 +47,9 @@ pub(crate) fn general_scene(file: &SceneFile, bodies: &[PartSection], folder: &P
         let at = format!("body[{index}]");
         let (body, controls) = part(&at, section, folder, &mut notes)?;
         starts_elsewhere |= controls.is_some();
-        start.extend(controls.unwrap_or_else(|| body.shape.as_ref().map_or_else(Vec::new, ShapeScene::start)));
+        start.extend(
+            controls.unwrap_or_else(|| body.shape.as_ref().map_or_else(Vec::new, LatticeShape::start_controls)),
+        );
         found.push(body);
     }
     let mut contacts = Vec::new();
@@ -106,8 +108,8 @@ fn part(
     let mut start = None;
     match (shaped, &section.lattice) {
         (Some(_), Some(_)) => refused("lattice", "a surface or a lattice, not both")?,
-        (Some((shape, controls)), None) => (body.shape, start) = (Some(ShapeScene::Heights(shape)), controls),
-        (None, Some(lattice)) => body.shape = Some(ShapeScene::Lattice(lattice.shape(&body.mesh()?.0)?)),
+        (Some((shape, controls)), None) => (body.shape, start) = (Some(shape), controls),
+        (None, Some(lattice)) => body.shape = Some(lattice.shape(&body.mesh()?.0)?),
         (None, None) => {}
     }
     if let Geometry::Mesh(geometry) = &body.geometry {
@@ -116,15 +118,15 @@ fn part(
     Ok((body, start))
 }
 
-fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder: &Path) -> Result<Block, SceneError> {
+fn block_of(at: &str, block: &BlockSection, shaped: Option<&LatticeShape>, folder: &Path) -> Result<Block, SceneError> {
     let face = |name: &str, face: ShapedFace, given: Option<&crate::CounterSection>| {
-        let (field, shaped) = (format!("{at}.block.{name}"), shaped.filter(|shape| shape.face == face));
+        let (field, shaped) = (format!("{at}.block.{name}"), shaped.filter(|shape| shape.face() == Some(face)));
         match (given, shaped) {
             (Some(_), Some(_)) => {
                 Err(SceneError::out_of_range(field, "a table", "none: the surface of the body shapes this face"))
             }
             (Some(section), None) => counter_surface(&field, section, Some(block.size), folder),
-            (None, Some(shape)) => Ok(CounterSurface::Plane { height: shape.start_height }),
+            (None, Some(shape)) => Ok(CounterSurface::Plane { height: shape.start }),
             (None, None) if face == ShapedFace::Bottom => Ok(CounterSurface::Plane { height: 0.0 }),
             (None, None) => {
                 let allowed = "a table such as { form = \"plane\", height = 10.0 }";

@@ -10,7 +10,7 @@ use contact::body::mesh::{BlockFace, Mesh, bounding_box};
 use contact::error::SceneError;
 use contact::names::find;
 use contact::scene::{Block, BodyFace, BodyScene, CounterSurface, Geometry, Master, MeshGeometry, NormalKind, Scene};
-use contact::shape::{ShapeScene, ShapedFace};
+use contact::shape::ShapedFace;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -59,11 +59,11 @@ pub(crate) fn block_scene(file: &SceneFile, folder: &Path) -> Result<Parts, Scen
     }
     let (heights, start) = heights((surface, admissible), size, folder)?;
     let subdomains = file.mesh.subdomains.unwrap_or_else(|| file.mesh.bricks.map(default_subdomains));
-    let own = Block::new(size, heights.start_height, file.mesh.bricks, subdomains);
+    let own = Block::new(size, heights.start, file.mesh.bricks, subdomains);
     let counter = counter_surface("counter_surface", counter, Some(size), folder)?;
     let geometry = Geometry::Block(own.clone());
     let mut bodies = vec![BodyScene {
-        shape: Some(ShapeScene::Heights(heights)),
+        shape: Some(heights),
         ..body("lower", geometry, (lower.material.clone(), &[]), &lower.supports, &lower.loads)?
     }];
     let master = match &file.upper {
@@ -119,7 +119,7 @@ pub(crate) fn mesh_scene(
     let obstacle = Master::Obstacle(counter_surface("counter_surface", counter, None, folder)?);
     let scene = Scene {
         name: file.name.clone(),
-        bodies: vec![BodyScene { shape: Some(ShapeScene::Lattice(lattice.shape(&mesh)?)), ..own }],
+        bodies: vec![BodyScene { shape: Some(lattice.shape(&mesh)?), ..own }],
         contacts: vec![contact.scene(face, file.friction, obstacle)],
     };
     Ok(Parts { scene, start: None, notes })

@@ -1,12 +1,12 @@
-//! A coarse net of controls within those of a height surface, and where a run begins.
+//! A coarse net of controls within those of the bodies, and where a run begins.
 
-use crate::commands::failure::Failure;
-use crate::commands::solved_shape::ContactObjective;
-use contact::shape::HeightShape;
-use nonsmooth::{Matrix, Vector};
+use contact::error::SceneError;
+use contact::scene::Scene;
+use contact::shape::CoarseNet;
+use nonsmooth::Vector;
 
-/// Control points per axis of a coarse net: a bowl or a saddle, with every slope. Nets of 4 were measured to end higher
-/// on the seat of the tutorial, and nets of 3 and then 4 to take more evaluations for the same ends.
+/// Control points along every coordinate of a coarse net: a bowl or a saddle, with every slope. Nets of 4 were measured
+/// to end higher on the seat of the tutorial, and nets of 3 and then 4 to take more evaluations for the same ends.
 const COARSE: usize = 3;
 
 /// Where a run begins.
@@ -18,17 +18,16 @@ pub struct Beginning {
     pub bending_before: Option<f64>,
 }
 
-/// Whether a height surface has more control points than a coarse net.
-pub fn has_coarse_net(heights: &HeightShape) -> bool {
-    heights.control_points.iter().any(|count| *count > COARSE)
+/// Whether an optimization of a scene begins with attempts: a shape asks for them, and has more control points than a
+/// coarse net.
+pub fn begins_with_attempts(scene: &Scene) -> bool {
+    scene.shapes().any(|shape| shape.attempts && shape.control_points.iter().any(|count| *count > COARSE))
 }
 
-/// The controls of a coarse net within those of the surface, as directions; none for other shapes.
+/// The coarse net of a scene.
 ///
 /// # Errors
-/// [`Failure::Input`] for a surface that is none.
-pub fn coarse_directions(objective: &ContactObjective) -> Result<Option<Matrix>, Failure> {
-    let Some(heights) = objective.solver().problem().scene.heights() else { return Ok(None) };
-    let surface = heights.surface()?;
-    Ok(Some(surface.refinement(&surface.coarser(COARSE)?)?))
+/// As [`Scene::coarse_net`].
+pub fn coarse_net(scene: &Scene) -> Result<CoarseNet, SceneError> {
+    scene.coarse_net(COARSE)
 }

@@ -8,7 +8,6 @@
 
 use crate::commands::failure::Failure;
 use crate::commands::solved_shape::ContactObjective;
-use contact::shape::bending;
 use nonsmooth::composite::{Linearization, LinearizationRequest, Linearized};
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric, project};
 use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, Polyhedron, Request, Vector};
@@ -29,15 +28,12 @@ pub struct FairShape {
     pub before: f64,
 }
 
-/// αᵀBα of height surfaces; none for other shapes.
-pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Option<f64> {
-    matrix(objective).map(|matrix| controls.dot(&(matrix * controls)))
-}
-
-fn matrix(objective: &ContactObjective) -> Option<Matrix> {
-    let scene = &objective.solver().problem().scene;
-    let (block, heights) = scene.shaped_block()?;
-    Some(bending(&heights.surface().ok()?, block.size))
+/// αᵀBα of the controls of all bodies.
+///
+/// # Errors
+/// As [`Scene::bending`](contact::scene::Scene::bending).
+pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Result<f64, Failure> {
+    Ok(controls.dot(&(objective.solver().problem().scene.bending()? * controls)))
 }
 
 /// The shape of least bending that is as good as this one to first order; none where it would hardly bend less, or
@@ -46,7 +42,7 @@ fn matrix(objective: &ContactObjective) -> Option<Matrix> {
 /// # Errors
 /// [`Failure::Computation`] from the contact solver.
 pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, Failure> {
-    let Some(matrix) = matrix(objective) else { return Ok(None) };
+    let matrix = objective.solver().problem().scene.bending()?;
     let accuracy = Accuracy::relative(1e-4).unwrap_or(Accuracy::TIGHTEST);
     let wanted = LinearizationRequest { accuracy, below: f64::INFINITY };
     let request = Request { linearization: Some(wanted), ..Request::tight(controls) };

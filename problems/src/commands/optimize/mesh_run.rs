@@ -2,7 +2,7 @@
 
 use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
-use crate::commands::optimize::coarse_net::{Beginning, coarse_directions};
+use crate::commands::optimize::coarse_net::{Beginning, coarse_net};
 use crate::commands::optimize::stages::{Attempt, MeshStage, Part};
 use crate::commands::optimize::subspace::Subspace;
 use crate::commands::output::notice;
@@ -78,14 +78,14 @@ pub fn run_on_mesh(
     folder: Option<&RunFolder>,
     status: &StatusLine,
 ) -> Result<MeshRun, Failure> {
-    let directions = match stage.part {
-        Part::Try(Attempt::Coarse) => coarse_directions(&objective)?,
+    let net = match stage.part {
+        Part::Try(Attempt::Coarse) => Some(coarse_net(&objective.solver().problem().scene)?),
         _ => None,
     };
-    let count = directions.as_ref().map_or(initial_controls.len(), Matrix::ncols);
-    let mean = || Vector::from_element(count, initial_controls.mean());
-    let scaled_at = if directions.is_some() { mean() } else { initial_controls.clone() };
-    let scaling = VariableScaling::Linear(objective.coordinates(&scaled_at, first_step));
+    let scaling = VariableScaling::Linear(match &net {
+        Some(net) => objective.net_coordinates(&initial_controls, &net.counts, first_step),
+        None => objective.coordinates(&initial_controls, first_step),
+    });
     let config = BundleTrustConfig { first_step: Some(first_step), scaling, ..settings(stage, time_limit) };
     let name = stage.part.folder();
     let label = name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
@@ -94,7 +94,7 @@ pub fn run_on_mesh(
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
     let set = objective.solver().problem().admissible.polyhedron();
     let method = BundleTrust::new(config)?.observer(progress);
-    let within = (set, directions.as_ref());
+    let within = (set, net.as_ref().map(|net| &net.directions));
     let report = match &journaled {
         None => minimized(method, &*objective, &initial_controls, within)?,
         Some(journaled) => {

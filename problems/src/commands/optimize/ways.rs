@@ -1,7 +1,7 @@
 //! Where the runs of an optimization begin: the start of the scene, other starts, or what earlier runs have found.
 
 use crate::commands::failure::Failure;
-use crate::commands::optimize::coarse_net::{Beginning, coarse_directions};
+use crate::commands::optimize::coarse_net::{Beginning, coarse_net};
 use crate::commands::optimize::fairness::fair_shape;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::{Attempt, Part};
@@ -105,27 +105,24 @@ fn fairer(objective: &ContactObjective, run: &MeshRun, first_step: f64) -> Resul
     }))
 }
 
-/// A further start, moved into the admissible set, always the same for its number: the second follows the counter
-/// surface, the others are random in the coarse net, so that they differ as shapes and not as noise. Lattices have
-/// random displacements.
+/// A further start, moved into the admissible set, always the same for its number: where all controls are heights, the
+/// second follows what lies opposite to them; the others are random in the coarse net, so that they differ as shapes
+/// and not as noise.
 fn other_start(
     objective: &ContactObjective,
     (start, first_step): (&Vector, f64),
     number: usize,
 ) -> Result<Vector, Failure> {
-    let set = objective.solver().problem().admissible.polyhedron();
-    let random = |count: usize| seeded_direction(count, number as u64);
-    let direction = match (coarse_directions(objective)?, number) {
-        (Some(_), 2) => {
-            let ceiling = set.upper();
-            ceiling.add_scalar(-ceiling.mean())
-        }
-        (Some(directions), _) => &directions * random(directions.ncols()),
-        (None, _) => random(start.len()),
+    let problem = objective.solver().problem();
+    let set = problem.admissible.polyhedron();
+    let ceiling = set.upper().add_scalar(-set.upper().mean());
+    let follows = number == 2 && ceiling.amax().is_finite() && ceiling.amax() > 0.0;
+    let moved = if follows && problem.scene.shapes().all(|shape| shape.face().is_some()) {
+        start + ceiling
+    } else {
+        let net = coarse_net(&problem.scene)?.directions;
+        let direction = &net * seeded_direction(net.ncols(), number as u64);
+        start + &direction * (CHANGE * first_step / direction.amax().max(f64::MIN_POSITIVE))
     };
-    let size = direction.amax();
-    let follows = number == 2 && size.is_finite() && objective.solver().problem().scene.heights().is_some();
-    let length = if follows { size } else { CHANGE * first_step };
-    let moved = start + direction * (length / size.max(f64::MIN_POSITIVE));
     project(set, &moved).map_err(|error| Failure::Computation(format!("start {number}: {error}")))
 }
