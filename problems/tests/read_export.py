@@ -5,8 +5,8 @@
 
 Checks, by OpenCASCADE: surface.step is one face and lower_body.step a valid solid; both are in mm; 1 000 random points of
 surface.csv, which the program computes without the files, lie within 1e-6 mm of both. By VTK: bodies as triangles are closed
-and oriented outwards; points on 3 000 random triangles of surface.stl lie within TOLERANCE (default 1e-3 mm) of the surface in
-surface.step; the volumes of both forms of the lower body agree.
+and oriented outwards; points on the triangles of surface.stl lie within TOLERANCE of the surface in surface.step, by default
+0.05 mm, what bricks of the example leave of its curvature; the volumes of both forms of the lower body agree.
 """
 
 import sys
@@ -116,4 +116,4 @@ def main(folder, tolerance):
     assert largest <= tolerance
 
 
-main(Path(sys.argv[1]), float(sys.argv[2]) if len(sys.argv) > 2 else 1e-3)
+main(Path(sys.argv[1]), float(sys.argv[2]) if len(sys.argv) > 2 else 0.05)

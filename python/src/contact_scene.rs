@@ -170,7 +170,7 @@ impl ContactScene {
     #[getter]
     fn control_shape(&self) -> Vec<usize> {
         let scene = &self.case.scene;
-        scene.heights().map_or_else(|| vec![scene.control_count()], |heights| heights.control_points.to_vec())
+        scene.heights().map_or_else(|| vec![scene.control_count()], |heights| heights.control_points[..2].to_vec())
     }
 
     /// Controls at the start, mm.

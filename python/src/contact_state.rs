@@ -14,12 +14,12 @@ struct NodeGrid {
     layers: usize,
 }
 
-/// The grid of the contact nodes where the only contact is that of a face of a block that a height surface shapes; none
+/// The grid of the contact nodes where the only contact is that of a face of a block whose heights are controls; none
 /// for other scenes.
 fn grid_of(problem: &ContactProblem) -> Option<NodeGrid> {
     let [contact] = &problem.scene.contacts[..] else { return None };
     let body = &problem.scene.bodies[contact.slave.body];
-    let is_shaped = body.heights()?.face.block_face().name() == contact.slave.face;
+    let is_shaped = body.heights()?.face()?.block_face().name() == contact.slave.face;
     let [first, second, layers] = body.block().filter(|_| is_shaped)?.grid().nodes();
     Some(NodeGrid { columns: [first, second], layers })
 }

@@ -6,6 +6,8 @@ pub use crate::cost::PressureRoot;
 use crate::cost::{ContactAreas, Limit, LimitedQuantity, Measure, PressureCost};
 use crate::error::SceneError;
 use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCases, Over, WeightedCase};
+use crate::scene::Scene;
+use crate::shape::LatticeShape;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::nonlinear::ConstraintPiece;
 use nonsmooth::{
@@ -280,20 +282,28 @@ impl ContactObjective {
     /// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean of the n heights of a body by
     /// κ and keeps differences.
     pub fn coordinates(&self, start: &Vector, first_step: f64) -> Matrix {
-        let mut coordinates = Matrix::identity(start.len(), start.len());
-        let scene = &self.solver().problem().scene;
-        let mut first = 0;
-        for body in scene.bodies.iter().filter(|body| body.shape.is_some()) {
-            // Fewer controls than those of the scene are those of a coarser net of its only surface.
-            let is_only = body.control_count() == scene.control_count();
-            let count = if is_only { start.len() } else { body.control_count() };
-            if body.heights().is_some() {
-                let stretch = (start.rows(first, count).mean().abs() / first_step).max(1.0);
+        let counts: Vec<usize> = self.scene().shapes().map(LatticeShape::control_count).collect();
+        self.net_coordinates(start, &counts, first_step)
+    }
+
+    /// As [`coordinates`](Self::coordinates), of the controls of coarser nets: so many of every body with controls.
+    pub fn net_coordinates(&self, start: &Vector, counts: &[usize], first_step: f64) -> Matrix {
+        let variables = counts.iter().sum();
+        let mut coordinates = Matrix::identity(variables, variables);
+        let (mut row, mut first) = (0, 0);
+        for (shape, &count) in self.scene().shapes().zip(counts) {
+            let own = shape.control_count();
+            if shape.face().is_some() {
+                let stretch = (start.rows(row, own).mean().abs() / first_step).max(1.0);
                 coordinates.view_mut((first, first), (count, count)).add_scalar_mut((stretch - 1.0) / count as f64);
             }
-            first += count;
+            (row, first) = (row + own, first + count);
         }
         coordinates
+    }
+
+    fn scene(&self) -> &Scene {
+        &self.solver().problem().scene
     }
 }
 

@@ -6,28 +6,6 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ExchangeError {
-    /// A tolerance below what single precision can hold.
-    #[error(
-        "tolerance = {value:e} mm is not allowed; allowed: at least {least:.1e} mm, because STL has single precision"
-    )]
-    Tolerance {
-        /// The tolerance, mm.
-        value: f64,
-        /// The least one that is allowed here, mm.
-        least: f64,
-    },
-    /// A tolerance that asks for too large a file.
-    #[error(
-        "tolerance = {value:e} mm takes {needed:.1e} triangles; allowed: a tolerance that takes at most {most:.1e}"
-    )]
-    TooManyTriangles {
-        /// The tolerance, mm.
-        value: f64,
-        /// Triangles that it takes.
-        needed: f64,
-        /// Largest number of triangles allowed.
-        most: f64,
-    },
     /// A body without thickness.
     #[error(
         "height {height} mm at ({x1}, {x2}) is not allowed; allowed: heights on one side of {plane} mm, the plane that closes the body"
@@ -84,9 +62,6 @@ pub enum ExchangeError {
 /// What coordinates may be.
 const FINITE: &str = "finite numbers in the range of single precision";
 
-/// What lines may be.
-const ASCENDING: &str = "ascending numbers that differ in single precision";
-
 /// Refuses numbers that are not finite, or beyond single precision.
 pub(crate) fn all_finite(what: &'static str, values: &[f64]) -> Result<(), ExchangeError> {
     match values.iter().position(|value| !(*value as f32).is_finite()) {
@@ -98,12 +73,4 @@ pub(crate) fn all_finite(what: &'static str, values: &[f64]) -> Result<(), Excha
 /// Refuses a list of wrong length.
 pub(crate) fn counted(what: &'static str, expected: usize, found: usize) -> Result<(), ExchangeError> {
     if expected == found { Ok(()) } else { Err(ExchangeError::Count { what, expected, found }) }
-}
-
-/// Refuses lines that are not one beyond the other when they are rounded to single precision.
-pub(crate) fn ascending(lines: &[f64]) -> Result<(), ExchangeError> {
-    match (1..lines.len()).find(|&index| lines[index] as f32 <= lines[index - 1] as f32) {
-        Some(index) => Err(ExchangeError::Number { what: "line", index, value: lines[index], allowed: ASCENDING }),
-        None => Ok(()),
-    }
 }

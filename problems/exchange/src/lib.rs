@@ -1,8 +1,8 @@
-//! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files;
+//! Triangles as STL files; surfaces over a rectangle, and bodies below them, as STEP files; matrices as Matrix Market files;
 //! grids with data as VTU files; volume meshes as Gmsh files, which are read too.
 //!
 //! ```text
-//! heights on lines ─ triangles ─ stl        chord error bounded by second derivatives (triangulation.rs)
+//! triangles        ─ stl
 //! B-spline heights ─ step                   exact: x₁, x₂ of the control points are Greville abscissae (step)
 //! entries          ─ matrix_market
 //! points, cells    ─ vtk                    arrays with units, numbers without rounding
@@ -13,14 +13,10 @@
 
 mod error;
 pub mod gmsh;
-mod heights;
 pub mod matrix_market;
 pub mod step;
 mod stl;
-mod triangulation;
 pub mod vtk;
 
 pub use error::ExchangeError;
-pub use heights::Heights;
-pub use stl::stl;
-pub use triangulation::{Triangle, lines, sheet, solid};
+pub use stl::{Triangle, stl};

@@ -1,8 +1,10 @@
 //! Triangles as a binary STL file.
 
 use crate::error::ExchangeError;
-use crate::triangulation::Triangle;
 use stl_io::{Normal, Vertex, write_stl};
+
+/// Three corners, counterclockwise as seen from outside, mm.
+pub type Triangle = [[f32; 3]; 3];
 
 /// What the header says, which has 80 bytes. It must not begin with `solid`, as text files do.
 const HEADER: &[u8] = b"lengths in mm; written by nonsmooth";

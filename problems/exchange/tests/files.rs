@@ -4,85 +4,21 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use exchange::step::{self, SplineHeights};
-use exchange::{ExchangeError, Heights, lines, sheet, solid, stl};
+use exchange::{ExchangeError, stl};
 use std::collections::BTreeMap;
 use testset::kit::step_file::{Entities, Surface, entities};
 use testset::kit::stl_file::{edges, triangles, volume};
 
-/// 10 + sin(x₁/3) cos(x₂/2) over [0, 12] × [0, 8], and the largest second derivatives.
-fn waves(x1: f64, x2: f64) -> f64 {
-    10.0 + (x1 / 3.0).sin() * (x2 / 2.0).cos()
-}
-const CURVATURE: [f64; 3] = [1.0 / 9.0, 1.0 / 6.0, 1.0 / 4.0];
-
-fn sampled(lines: [Vec<f64>; 2], surface: impl Fn(f64, f64) -> f64) -> Heights {
-    let places = lines[0].iter().flat_map(|&x1| lines[1].iter().map(move |&x2| (x1, x2)));
-    let values = places.map(|(x1, x2)| surface(x1, x2)).collect();
-    Heights::new(lines, values).unwrap()
-}
-
 #[test]
-fn triangles_keep_within_the_tolerance_and_do_not_waste_it() {
-    for tolerance in [1e-1, 1e-2, 1e-3] {
-        let lines = lines([&[0.0, 12.0], &[0.0, 8.0]], CURVATURE, 12.0, tolerance).unwrap();
-        let found = triangles(&stl(&sheet(&sampled(lines, waves))).unwrap());
-        let mut largest = 0.0_f64;
-        for corners in &found {
-            let point = |weights: [f64; 3]| -> [f64; 3] {
-                std::array::from_fn(|axis| {
-                    (0..3).map(|corner| weights[corner] * f64::from(corners[corner][axis])).sum()
-                })
-            };
-            for i in 0..=4_u8 {
-                for j in 0..=4 - i {
-                    let [s, t] = [i, j].map(|index| f64::from(index) / 4.0);
-                    let [x1, x2, x3] = point([s, t, 1.0 - s - t]);
-                    largest = largest.max((x3 - waves(x1, x2)).abs());
-                }
-            }
-        }
-        // The bound takes the worst of all three derivatives at one place.
-        assert!(largest <= tolerance && largest > 0.3 * tolerance, "{largest} of {tolerance}");
-    }
-}
-
-#[test]
-fn bodies_are_closed_and_have_their_volume() {
-    let lines = lines([&[0.0, 5.0, 12.0], &[0.0, 8.0]], CURVATURE, 12.0, 1e-3).unwrap();
-    let heights = sampled(lines, waves);
-    let open = triangles(&stl(&sheet(&heights)).unwrap());
-    let [n1, n2] = heights.counts();
-    assert_eq!(edges(&open).1, 2 * (n1 + n2 - 2), "the edges of the sheet are its rim");
-    // ∫∫ sin(x₁/3) cos(x₂/2).
-    let wave = 3.0 * (1.0 - 4.0_f64.cos()) * 2.0 * 4.0_f64.sin();
-    for (plane, expected) in [(0.0, 960.0 + wave), (15.0, 480.0 - wave)] {
-        let body = triangles(&stl(&solid(&heights, plane).unwrap()).unwrap());
-        let (count, unmatched) = edges(&body);
-        assert_eq!((2 * count, unmatched), (3 * body.len(), 0), "below or above {plane}");
-        assert!((volume(&body) / expected - 1.0).abs() < 1e-4, "{} {expected}", volume(&body));
-        // Without one triangle it is open.
-        assert_eq!(edges(&body[1..]).1, 3);
-    }
-}
-
-#[test]
-fn what_cannot_be_triangulated_is_refused() {
-    let kinks: [&[f64]; 2] = [&[0.0, 100.0], &[0.0, 100.0]];
-    let least = match lines(kinks, CURVATURE, 100.0, 1e-6) {
-        Err(ExchangeError::Tolerance { value: 1e-6, least }) => least,
-        other => panic!("{other:?}"),
-    };
-    assert!((1e-5..1e-4).contains(&least) && lines(kinks, [1e-3; 3], 100.0, least).is_ok());
-    assert!(matches!(lines(kinks, CURVATURE, 100.0, f64::NAN), Err(ExchangeError::Tolerance { .. })));
-    assert!(matches!(lines(kinks, [1e3; 3], 100.0, 1e-3), Err(ExchangeError::TooManyTriangles { .. })));
-    assert!(matches!(lines(kinks, [f64::NAN; 3], 100.0, 1e-3), Err(ExchangeError::Number { .. })));
-    assert_eq!(lines(kinks, [0.0; 3], 100.0, 1e-3).unwrap(), [[0.0, 100.0], [0.0, 100.0]].map(Vec::from));
-    let heights = sampled([vec![0.0, 1.0], vec![0.0, 1.0]], |x1, _| 1.0 + x1);
-    for plane in [1.0, 1.5, 2.0] {
-        assert!(matches!(solid(&heights, plane), Err(ExchangeError::Thickness { .. })), "{plane}");
-    }
-    assert!(matches!(Heights::new([vec![0.0, 0.0], vec![0.0, 1.0]], vec![0.0; 4]), Err(ExchangeError::Number { .. })));
-    assert!(matches!(Heights::new([vec![0.0, 1.0], vec![0.0, 1.0]], vec![0.0; 3]), Err(ExchangeError::Count { .. })));
+fn triangles_are_read_back_and_close_a_body() {
+    let corners =
+        [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 5.0]].map(|x| x.map(|x: f64| x as f32));
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]].map(|face| face.map(|corner: usize| corners[corner]));
+    let body = triangles(&stl(&faces).unwrap());
+    assert_eq!((body.as_slice(), edges(&body)), (&faces[..], (6, 0)));
+    assert!((volume(&body) - 5.0).abs() < 1e-12);
+    // Without one triangle it is open.
+    assert_eq!(edges(&body[1..]).1, 3);
 }
 
 /// x₁² + x₁x₂ + 50 over [0, 4] × [0, 2], of degrees 3 and 2 with inner knots: control heights are the polar forms at

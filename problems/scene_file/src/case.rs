@@ -94,7 +94,7 @@ impl Case {
         }
         let objective = Objective::new(&file.objective, base(&scene), folder)?;
         if let (Objective::Deviation(wanted), Some((block, heights))) = (&objective, scene.shaped_block()) {
-            let height = heights.start_height;
+            let height = heights.start;
             wanted.at(&block.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
         }
         let cases = cases(file, &scene)?;

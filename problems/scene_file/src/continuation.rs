@@ -3,7 +3,6 @@
 use crate::{Case, OptimizerSection, SceneFile};
 use contact::error::SceneError;
 use contact::scene::Scene;
-use contact::shape::ShapeScene;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -91,8 +90,7 @@ fn case(file: &SceneFile, index: usize, folder: &Path, scene: &Scene) -> Result<
     })?;
     for changed in std::iter::once(&mut case.scene).chain(case.cases.iter_mut().map(|case| &mut case.scene)) {
         for (body, model) in changed.bodies.iter_mut().zip(&scene.bodies) {
-            if let (Some(ShapeScene::Lattice(own)), Some(ShapeScene::Lattice(model))) = (&mut body.shape, &model.shape)
-            {
+            if let (Some(own), Some(model)) = (&mut body.shape, &model.shape) {
                 own.coordinates = model.coordinates.clone();
             }
         }

@@ -11,7 +11,7 @@ use contact::scene::{
     AreaKind, Block, BodyFace, BodyScene, ContactKind, ContactScene, CounterSurface, Geometry, Master, MeshGeometry,
     NormalKind, Scene,
 };
-use contact::shape::{HeightShape, ShapeScene, ShapedFace};
+use contact::shape::{LatticeShape, ShapedFace};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -46,7 +46,9 @@ pub(crate) fn scene_of(file: &SceneFile, sources: &Sources<'_>) -> Result<Parts,
         let name = section.name(&at, file.body.len())?;
         let (body, controls) = body(&at, &name, section, sources, &mut notes)?;
         starts_elsewhere |= controls.is_some();
-        start.extend(controls.unwrap_or_else(|| body.shape.as_ref().map_or_else(Vec::new, ShapeScene::start)));
+        start.extend(
+            controls.unwrap_or_else(|| body.shape.as_ref().map_or_else(Vec::new, LatticeShape::start_controls)),
+        );
         found.push(body);
     }
     let mut contacts = Vec::new();
@@ -113,8 +115,8 @@ fn body(
     let mut start = None;
     match (shaped, &section.lattice) {
         (Some(_), Some(_)) => refused("lattice", "a surface or a lattice, not both")?,
-        (Some((shape, controls)), None) => (body.shape, start) = (Some(ShapeScene::Heights(shape)), controls),
-        (None, Some(lattice)) => body.shape = Some(ShapeScene::Lattice(lattice.shape(&body.mesh()?.0)?)),
+        (Some((shape, controls)), None) => (body.shape, start) = (Some(shape), controls),
+        (None, Some(lattice)) => body.shape = Some(lattice.shape(&body.mesh()?.0)?),
         (None, None) => {}
     }
     if let Geometry::Mesh(geometry) = &body.geometry {
@@ -123,15 +125,15 @@ fn body(
     Ok((body, start))
 }
 
-fn block_of(at: &str, block: &BlockSection, shaped: Option<&HeightShape>, folder: &Path) -> Result<Block, SceneError> {
+fn block_of(at: &str, block: &BlockSection, shaped: Option<&LatticeShape>, folder: &Path) -> Result<Block, SceneError> {
     let face = |name: &str, face: ShapedFace, given: Option<&crate::ObstacleSection>| {
-        let (field, shaped) = (format!("{at}.{name}"), shaped.filter(|shape| shape.face == face));
+        let (field, shaped) = (format!("{at}.{name}"), shaped.filter(|shape| shape.face() == Some(face)));
         match (given, shaped) {
             (Some(_), Some(_)) => {
                 Err(SceneError::out_of_range(field, "a table", "none: the surface of the body shapes this face"))
             }
             (Some(section), None) => obstacle(&field, section, Some(([0.0; 2], block.size)), folder),
-            (None, Some(shape)) => Ok(CounterSurface::Plane { height: shape.start_height }),
+            (None, Some(shape)) => Ok(CounterSurface::Plane { height: shape.start }),
             (None, None) if face == ShapedFace::Bottom => Ok(CounterSurface::Plane { height: 0.0 }),
             (None, None) => {
                 let allowed = "a table such as { form = \"plane\", height = 10.0 }";

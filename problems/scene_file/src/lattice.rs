@@ -1,5 +1,6 @@
 //! The lattice of a scene file: free-form shapes of any region.
 
+use crate::FairnessSection;
 use contact::body::mesh::Mesh;
 use contact::error::SceneError;
 use contact::names::nodes_of;
@@ -7,8 +8,6 @@ use contact::shape::{Coordinates, Directions, LatticeShape, NodeBound};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Highest degree that is chosen without being asked for.
-const USUAL_DEGREE: usize = 3;
 /// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
 const MARGIN: f64 = 1e-6;
 
@@ -70,6 +69,22 @@ pub struct LatticeSection {
     /// Least and largest displacement of a control point.
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub displacement: [f64; 2],
+    /// Largest slope of the net of control points: the difference of the displacements of neighbours over the distance
+    /// of their places. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e9), extend("x-unit" = "1", "exclusiveMinimum" = 0.0))]
+    pub slope: Option<f64>,
+    /// Least and largest volume of the body, where nodes move along one of the axes x1, x2, x3 alone; a limit bounds
+    /// other volumes. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
+    pub volume: Option<[f64; 2]>,
+    /// A fairer shape than the measure alone asks for. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fairness: Option<FairnessSection>,
+    /// Whether an optimization begins with short attempts, one of them on a net of 3 control points per coordinate.
+    #[serde(default)]
+    pub attempts: bool,
     /// Bounds of the displacements of nodes by the shape, a row each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bounds: Vec<NodeBoundSection>,
@@ -123,7 +138,6 @@ impl LatticeSection {
     /// # Errors
     /// [`SceneError::OutOfRange`] for fields that exclude each other and for names that the mesh does not have.
     pub(crate) fn shape(&self, mesh: &Mesh) -> Result<LatticeShape, SceneError> {
-        let usual = self.control_points.map(|count| USUAL_DEGREE.min(count.saturating_sub(1)));
         let directions = match (&self.normal, &self.directions) {
             (Some(_), Some(directions)) => {
                 let value = format!("{directions:?}");
@@ -137,18 +151,21 @@ impl LatticeSection {
             component: bound.component - 1,
             range: bound.range,
         };
+        let lattice = LatticeShape::new(self.coordinates(mesh)?, self.control_points, self.displacement);
         Ok(LatticeShape {
-            coordinates: self.coordinates(mesh)?,
-            control_points: self.control_points,
-            degrees: self.degrees.unwrap_or(usual),
+            degrees: self.degrees.unwrap_or(lattice.degrees),
             directions,
             region: self.region.clone(),
             fixed: self.fixed.clone(),
             hold_supports: self.hold_supports,
             symmetric: among(&self.symmetric),
             frozen: self.frozen,
-            displacement: self.displacement,
             node_bounds: self.bounds.iter().map(bound).collect(),
+            slope: self.slope,
+            volume: self.volume,
+            fairness: self.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
+            attempts: self.attempts,
+            ..lattice
         })
     }
 

@@ -5,7 +5,7 @@ use crate::grid_file;
 use crate::{AdmissibleSection, ObstacleSection, SplineName, StartSection, SurfaceSection};
 use contact::error::SceneError;
 use contact::scene::CounterSurface;
-use contact::shape::{HeightShape, SplineKind};
+use contact::shape::LatticeShape;
 use std::path::Path;
 
 /// Degree of the paper's B-splines.
@@ -16,25 +16,38 @@ pub(crate) fn heights(
     (surface, admissible): (&SurfaceSection, &AdmissibleSection),
     size: [f64; 2],
     folder: &Path,
-) -> Result<(HeightShape, Option<Vec<f64>>), SceneError> {
+) -> Result<(LatticeShape, Option<Vec<f64>>), SceneError> {
     let (start_height, start) = start(&surface.start, size, surface.control_points, folder)?;
-    let shape = HeightShape {
-        face: surface.face,
-        spline: spline(surface)?,
-        control_points: surface.control_points,
-        bounds: admissible.bounds(),
-        start_height,
+    let points = surface.control_points;
+    let shape = LatticeShape {
+        thickness: Some(admissible.minimum_height),
+        slope: Some(admissible.slope),
+        volume: Some(admissible.volume),
         fairness: surface.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
+        ..LatticeShape::heights(surface.face, points, degrees(surface)?, start_height)
     };
-    Ok((shape, start))
+    match shape.face() {
+        Some(_) => Ok((shape, start)),
+        None => Err(SceneError::out_of_range("surface.start", start_height, "a finite mean height > 0 mm")),
+    }
 }
 
-fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
-    match (section.spline, section.degree) {
-        (SplineName::Bspline, degree) => Ok(SplineKind::BSpline(degree.unwrap_or(DEFAULT_DEGREE))),
-        (SplineName::Bezier, None) => Ok(SplineKind::Bezier),
+/// Degrees along both axes.
+fn degrees(section: &SurfaceSection) -> Result<[usize; 2], SceneError> {
+    let degrees = match (section.spline, section.degree) {
+        (SplineName::Bspline, degree) => [degree.unwrap_or(DEFAULT_DEGREE); 2],
+        (SplineName::Bezier, None) => section.control_points.map(|count| count.saturating_sub(1)),
         (SplineName::Bezier, Some(degree)) => {
-            Err(SceneError::out_of_range("surface.degree", degree, "no degree with surface.spline = \"bezier\""))
+            let allowed = "no degree with surface.spline = \"bezier\"";
+            return Err(SceneError::out_of_range("surface.degree", degree, allowed));
+        }
+    };
+    let mut both = degrees.into_iter().zip(section.control_points);
+    match both.find(|(degree, count)| !(1..*count).contains(degree)) {
+        None => Ok(degrees),
+        Some((degree, count)) => {
+            let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
+            Err(SceneError::out_of_range("surface.degree", degree, allowed))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Surfaces of a scene file: obstacles, optimized surfaces of blocks, and their bounds.
 
 use contact::scene::Side;
-use contact::shape::{ShapeBounds, ShapedFace};
+use contact::shape::ShapedFace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -194,13 +194,6 @@ pub struct AdmissibleSection {
     /// Smallest and largest volume of the body.
     #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
     pub volume: [f64; 2],
-}
-
-impl AdmissibleSection {
-    /// The constants of the admissible set.
-    pub(crate) fn bounds(&self) -> ShapeBounds {
-        ShapeBounds { minimum_height: self.minimum_height, slope: self.slope, volume: self.volume }
-    }
 }
 
 fn six_by_six() -> [usize; 2] {

@@ -63,10 +63,10 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// The layout of the controls of a scene: rows of the only height surface, else one list, body by body.
+    /// The layout of the controls of a scene: rows of heights of the only optimized body, else one list, body by body.
     pub fn of(scene: &Scene) -> Self {
         match scene.heights() {
-            Some(heights) => Self::Grid(heights.control_points),
+            Some(heights) => Self::Grid([heights.control_points[0], heights.control_points[1]]),
             None => Self::Plain(scene.control_count()),
         }
     }

@@ -27,7 +27,7 @@ pub fn differences(
     collect(String::new(), (value(there)?, value(here)?), &mut found);
     // The degree that a file leaves out is the default one.
     let splines = |scene: &LoadedScene| {
-        let heights = scene.case.scene.bodies.iter().map(|body| body.heights().map(|heights| heights.spline));
+        let heights = scene.case.scene.bodies.iter().map(|body| body.heights().map(|heights| heights.degrees));
         heights.collect::<Vec<_>>()
     };
     let same_splines = splines(there) == splines(here);

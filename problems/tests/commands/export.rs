@@ -2,7 +2,7 @@
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::scene::{BodyScene, Scene, hertz, signorini};
-use contact::shape::{HeightShape, SplineKind};
+use contact::shape::LatticeShape;
 use serde_json::{Value, json};
 use std::path::Path;
 use testset::kit::step_file::{Surface, entities};
@@ -19,7 +19,7 @@ fn uneven(scene: &Scene) -> Vec<f64> {
     start.map(|(index, height)| height * (0.985 + 0.01 * (1.7 * index as f64).sin())).collect()
 }
 
-fn surface_of(scene: &Scene) -> &HeightShape {
+fn surface_of(scene: &Scene) -> &LatticeShape {
     scene.heights().unwrap()
 }
 
@@ -41,7 +41,7 @@ fn height(scene: &Scene, controls: &[f64], place: [f64; 2]) -> f64 {
     }
     let along = |axis: usize| -> Vec<f64> {
         let count = surface_of(scene).control_points[axis];
-        let degree = if let SplineKind::BSpline(degree) = surface_of(scene).spline { degree } else { count - 1 };
+        let degree = surface_of(scene).degrees[axis];
         let spans = (count - degree) as f64;
         let knot = |index: usize| index.clamp(degree, count).saturating_sub(degree) as f64 / spans;
         let knots: Vec<f64> = (0..count + degree + 1).map(knot).collect();
@@ -58,14 +58,10 @@ fn the_files_hold_the_surface_and_the_bodies() {
         (HERTZ, hertz().unwrap(), vec![]),
         (
             SIGNORINI,
-            signorini().unwrap().with_heights(|heights| heights.spline = SplineKind::Bezier),
+            signorini().unwrap().with_shapes(|heights| heights.degrees = [5, 5, 1]),
             vec!["--surface", "bezier"],
         ),
-        (
-            HERTZ,
-            hertz().unwrap().with_heights(|heights| heights.spline = SplineKind::BSpline(1)),
-            vec!["--surface", "bspline:1"],
-        ),
+        (HERTZ, hertz().unwrap().with_shapes(|heights| heights.degrees = [1; 3]), vec!["--surface", "bspline:1"]),
     ];
     for (program, scene, options) in cases {
         let folder = scratch();
@@ -84,7 +80,7 @@ fn the_files_hold_the_surface_and_the_bodies() {
             &["surface.step", "lower_body.step", "surface.csv", "change.csv"],
         ];
         assert_eq!(names, expected.concat());
-        check_triangles(&out, &scene, &controls, 1e-3);
+        check_triangles(&out, &scene, &controls);
         for name in ["surface.step", "lower_body.step"] {
             let surface = Surface::of(&entities(&std::fs::read_to_string(out.join(name)).unwrap()));
             let mut largest = 0.0_f64;
@@ -96,48 +92,37 @@ fn the_files_hold_the_surface_and_the_bodies() {
                 largest = largest.max(distance).max((x3 - height(&scene, &controls, place)).abs());
             }
             // Rounding of sums of heights of 100 mm.
-            assert!(largest < 2e-13 * size(&scene)[0].max(surface_of(&scene).start_height), "{name}: {largest} mm");
+            assert!(largest < 2e-13 * size(&scene)[0].max(surface_of(&scene).start), "{name}: {largest} mm");
         }
         check_table(&out, &scene, &controls);
     }
 }
 
-#[test]
-fn the_relief_of_the_surface_stands_beside_the_tolerance() {
-    let folder = scratch();
-    let out = folder.path().join("out");
-    let printed = kit::run(HERTZ, &["export", "--stl", "--out", text(&out)]);
-    let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
-    assert!(printed.contains("whose heights differ by 0 mm: 18 triangles within 0.001 mm"), "{printed}");
-}
-
-/// Closed bodies of the right volume, and triangles within the tolerance of the surfaces.
-fn check_triangles(out: &Path, scene: &Scene, controls: &[f64], tolerance: f64) {
+/// Closed bodies of the right volume, and a contact face whose corners lie on the surface.
+fn check_triangles(out: &Path, scene: &Scene, controls: &[f64]) {
     let read = |name: &str| triangles(&std::fs::read(out.join(name)).unwrap());
     let (surface, lower) = (read("surface.stl"), read("lower_body.stl"));
     assert_eq!(edges(&lower).1, 0, "the lower body is closed");
-    let mut largest = 0.0_f64;
-    for corners in surface.iter().step_by(surface.len() / 300 + 1) {
-        for weights in [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.4, 0.3, 0.3]] {
-            let point: [f64; 3] = std::array::from_fn(|axis| {
-                (0..3).map(|corner| weights[corner] * f64::from(corners[corner][axis])).sum()
-            });
-            largest = largest.max((point[2] - height(scene, controls, [point[0], point[1]])).abs());
-        }
+    let block = scene.bodies[0].block().unwrap();
+    assert_eq!(surface.len(), 2 * block.bricks[0] * block.bricks[1]);
+    for point in surface.iter().flatten().map(|point| point.map(f64::from)) {
+        // Single precision, on slopes below 5 %.
+        let off = (point[2] - height(scene, controls, [point[0], point[1]])).abs();
+        assert!(off < 2e-7 * point[2], "{off} mm at {point:?}");
     }
-    // Vertical distances, on slopes below 5 %.
-    assert!(largest <= tolerance * 1.002 && largest > 0.05 * tolerance, "{largest} mm of {tolerance} mm");
     let base = size(scene)[0] * size(scene)[1];
     let mean: f64 = surface_of(scene).surface().unwrap().integrals().iter().zip(controls).map(|(a, b)| a * b).sum();
-    assert!((volume(&lower) - base * mean).abs() <= tolerance * base, "{} {}", volume(&lower), base * mean);
+    // The facets are off by h²/8 times the curvature.
+    let off = 1e-3 * mean;
+    assert!((volume(&lower) - base * mean).abs() <= off * base, "{} {}", volume(&lower), base * mean);
     if let Some(upper) = scene.bodies.get(1).and_then(BodyScene::block) {
         let body = read("upper_body.stl");
         assert_eq!(edges(&body).1, 0, "the upper body is closed");
-        // The mean height of the sphere by the midpoint rule, which errs by less than the tolerance here.
+        // The mean height of the sphere by the midpoint rule.
         let places = (0..400 * 400).map(|index| [index / 400, index % 400].map(|i| (f64::from(i) + 0.5) / 400.0));
         let sum: f64 = places.map(|[s, t]| upper.bottom.height(size(scene)[0] * s, size(scene)[1] * t)).sum();
         let expected = base * (upper.top.height(0.0, 0.0) - sum / 160_000.0);
-        assert!((volume(&body) - expected).abs() <= 1.1 * tolerance * base, "{} {expected}", volume(&body));
+        assert!((volume(&body) - expected).abs() <= off * base, "{} {expected}", volume(&body));
     }
 }
 
@@ -262,9 +247,6 @@ fn options_that_do_not_go_together_are_refused() {
         (&["--run", "x"], &["--run is allowed with export only"]),
         (&["evaluate", "--friction-problem"], &["--friction-problem is allowed with export only"]),
         (&["export", "--out", out, "--evaluation", "1"], &["--run"]),
-        (&["export", "--out", out, "--step", "--tolerance", "1e-2"], &["--tolerance is allowed with --stl only"]),
-        (&["export", "--out", out, "--tolerance", "0"], &["--tolerance", "a finite number > 0"]),
-        (&["export", "--out", out, "--tolerance", "1e-9"], &["--tolerance = 1e-9 mm", "single precision"]),
         (&["export", "--out", out, "--resume", "x"], &["--resume is allowed with optimize, compare and study only"]),
         (&["export", "--out", out, "--diagnose"], &["--diagnose is allowed with evaluate only"]),
         (&["export", "--out", out, "--controls", "none.json"], &["--controls: none.json"]),
@@ -275,12 +257,6 @@ fn options_that_do_not_go_together_are_refused() {
         kit::refused(SIGNORINI, options, words);
         assert!(!Path::new(out).exists(), "{options:?}");
     }
-    // A coarser tolerance takes fewer triangles.
-    let count = |tolerance: &str| {
-        let command = ["export", "--stl", "--json", "--overwrite", "--out", out, "--tolerance", tolerance];
-        kit::json(HERTZ, &command)["files"][3]["triangles"].as_u64().unwrap()
-    };
-    assert!(count("1e-1") < count("1e-2") && count("1e-2") < count("1e-3"));
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flat_punch.toml");
     kit::json(CONTACT, &[scene, "export", "--json", "--overwrite", "--out", out]);
 }

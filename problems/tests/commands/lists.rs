@@ -106,10 +106,7 @@ fn what_several_bodies_do_not_have_is_refused_with_what_to_set() {
     let out = folder.path().join("out");
     for (options, words) in [
         (&["evaluate", "--young-modulus", "1e5"][..], ["--young-modulus", "--set body[0].material.young_modulus"]),
-        (
-            &["export", "--step", "--out", text(&out)],
-            ["--step is allowed", "several optimized bodies have --stl and --msh"],
-        ),
+        (&["export", "--step", "--out", text(&out)], ["--step is allowed", "every shape has --stl and --msh"]),
         (&["export", "--friction-problem", "--out", text(&out)], ["contact[1].tied = true", "no glued faces"]),
         (&["evaluate", "--subdomains", "3"], ["--subdomains = 3", "a divisor of the 4 bricks"]),
         (&["evaluate", "--set", "body[2].block.top.height=9"], ["cap.block.top = 9", "above the bottom"]),

@@ -82,3 +82,68 @@ fn meshes_of_files_grow_and_resume() {
     kit::json(CONTACT, &[lug, "export", "--run", text(&last), "--out", text(&exported), "--json"]);
     kit::refused(CONTACT, &[lug, "--continuation", "4,none.msh"], &["--continuation", "bricks alone"]);
 }
+
+/// Two blocks whose facing sides are shaped: heights of the lower one, a lattice in space of the upper one.
+const SHAPED: &str = r#"
+name = "shaped"
+
+[[body]]
+name = "base"
+material = { young_modulus = 7e4, poisson_ratio = 0.3 }
+supports = [{ face = "bottom", held = ["u1", "u2", "u3"] }]
+block = { size = [10.0, 10.0], bricks = [4, 4, 2] }
+surface = { control_points = [4, 4], start = { form = "plane", height = 5.0 } }
+admissible = { minimum_height = 2.0, slope = 2.0, volume = [400.0, 600.0] }
+
+[[body]]
+name = "punch"
+material = { young_modulus = 2.1e5, poisson_ratio = 0.3 }
+supports = [{ face = "x1-min", held = ["u1"] }, { face = "x2-min", held = ["u2"] }]
+loads = [{ face = "top", traction = [20.0, 0.0, -100.0] }]
+
+[body.block]
+size = [10.0, 10.0]
+bricks = [4, 4, 2]
+bottom = { form = "plane", height = 5.0 }
+top = { form = "plane", height = 10.0 }
+
+[body.lattice]
+control_points = [4, 5, 2]
+directions = [3]
+frozen = [[0, 0], [0, 0], [0, 1]]
+displacement = [0.0, 0.5]
+slope = 0.5
+volume = [400.0, 500.0]
+fairness = { weight = 1e3 }
+attempts = true
+
+[[contact]]
+slave = { body = "base", face = "top" }
+master = { body = "punch", face = "bottom" }
+friction = 0.2
+"#;
+
+/// Coarse nets, further starts and the bending are those of all bodies, whatever their controls are.
+#[test]
+fn lattices_and_several_bodies_have_attempts_and_starts() {
+    let scratch = kit::scratch();
+    let path = scratch.path().join("shaped.toml");
+    std::fs::write(&path, SHAPED).unwrap();
+    let run = |options: &[&str]| kit::json(CONTACT, &[&[text(&path), "--no-checks", "--json"], options].concat());
+    let names = |report: &Value| -> Vec<String> {
+        let stages = report["stages"].as_array().unwrap().iter();
+        stages.map(|stage| stage["run"].as_str().unwrap_or("whole").to_owned()).collect()
+    };
+    let default = run(&["--max-evaluations", "4", "--starts", "2"]);
+    assert_eq!(names(&default)[..2], ["try_direct", "try_coarse"], "{}", default["stages"]);
+    assert!(names(&default).contains(&"try_start_2".to_owned()), "{}", default["stages"]);
+    assert!(default["objective"].as_f64().unwrap() < default["objective_start"].as_f64().unwrap());
+    let several = run(&["--max-evaluations", "2", "--starts", "3", "--single"]);
+    assert_eq!(names(&several), ["start_1", "start_2", "start_3"]);
+    let starts: Vec<&Value> =
+        several["stages"].as_array().unwrap().iter().map(|stage| &stage["objective_start"]).collect();
+    assert!(starts[0] != starts[1] && starts[1] != starts[2], "{starts:?}");
+    let plain = run(&["evaluate", "--set", "body[1].lattice.fairness={weight=0.0}"]);
+    let fair = run(&["evaluate"]);
+    assert_eq!(plain["objective"], fair["objective"], "nothing bends at the start");
+}

@@ -333,7 +333,6 @@ mod tests {
     use crate::body::mesh::BlockFace;
     use crate::equilibrium::ContactProblem;
     use crate::scene::{CounterSurface, Geometry, Master, Scene, Support, hertz, signorini};
-    use crate::shape::ShapeBounds;
 
     /// Supports of two bodies, friction, expected numbers.
     type Stack<'a> = ([&'a [Support]; 2], f64, [usize; 3]);
@@ -351,9 +350,9 @@ mod tests {
             (block.bottom, block.top) = (plane(height), plane(3.0 * height));
         }
         let scene = scene.with_friction(friction).with_bricks([4; 3], [2; 3]);
-        let scene = scene.with_blocks(|blocks| blocks.size = [1.0; 2]).with_heights(|heights| {
-            heights.start_height = height;
-            heights.bounds = ShapeBounds { minimum_height: 0.5 * height, slope: 1.0, volume: [0.0, 2.0 * height] };
+        let scene = scene.with_blocks(|blocks| blocks.size = [1.0; 2]).with_shapes(|heights| {
+            (heights.start, heights.thickness) = (height, Some(0.5 * height));
+            (heights.slope, heights.volume) = (Some(1.0), Some([0.0, 2.0 * height]));
         });
         let problem = ContactProblem::new(scene).expect("a problem");
         let positions = problem.positions(&[height; 36]).expect("a block");

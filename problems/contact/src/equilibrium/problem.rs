@@ -16,7 +16,7 @@ use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
 use crate::patches::{CurvedFace, MiddlePoint};
 use crate::scene::{Geometry, Scene};
-use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap, ShapeScene, height_map};
+use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap};
 use std::sync::Arc;
 
 /// Poisson's ratio from which standard cells are nearly incompressible: total FETI takes hundreds of products.
@@ -364,22 +364,12 @@ fn bodies(scene: &Scene) -> Result<Vec<Body>, SceneError> {
 
 /// The maps of the bodies.
 fn maps(scene: &Scene, bodies: &[Body], points: &[Vec<MiddlePoint>]) -> Result<Vec<BodyMap>, SceneError> {
-    let map = |((scene, body), points): ((&crate::scene::BodyScene, &Body), &Vec<MiddlePoint>)| match (
-        &scene.shape,
-        &scene.geometry,
-    ) {
-        (None, _) => {
+    let map = |((scene, body), points): ((&crate::scene::BodyScene, &Body), &Vec<MiddlePoint>)| match &scene.shape {
+        None => {
             let base = body.mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
             Ok(BodyMap { base, middles: points.len(), controls: 0, rows: Vec::new() })
         }
-        (Some(ShapeScene::Lattice(lattice)), _) => lattice.map(&body.mesh, points, |node| body.held(node)),
-        (Some(ShapeScene::Heights(heights)), Geometry::Block(block)) => {
-            Ok(height_map(&heights.surface()?, block, heights.face).with_middles(points))
-        }
-        (Some(ShapeScene::Heights(_)), Geometry::Mesh(_)) => {
-            let allowed = "a lattice: a height surface shapes blocks only";
-            Err(SceneError::out_of_range("surface", "a height surface of a mesh", allowed))
-        }
+        Some(shape) => shape.map((&body.mesh, scene.block()), points, |node| body.held(node)),
     };
     scene.bodies.iter().zip(bodies).zip(points).map(map).collect()
 }

@@ -3,7 +3,6 @@
 use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
-use crate::shape::bending_rows;
 use nonsmooth::composite::{OuterFunction, OuterPart, OutputPiece};
 use nonsmooth::{ConstraintKind, Matrix, Vector};
 use std::ops::Range;
@@ -223,15 +222,15 @@ impl Part {
     }
 }
 
-/// √w R of the surfaces that the cases share, where their bending counts.
+/// √w R of the shapes that the cases share, where their bending counts.
 fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
     let Some(scene) = cases.first().map(|case| &case.problem.scene) else { return Ok(None) };
     let (mut parts, mut first) = (Vec::new(), 0);
     for body in &scene.bodies {
-        if let (Some(heights), Some(block)) = (body.heights().filter(|own| own.fairness != 0.0), body.block()) {
-            let (weight, allowed) = (heights.fairness, "a finite number ≥ 0 (unit of the objective)");
+        if let Some(shape) = body.shape.as_ref().filter(|own| own.fairness != 0.0) {
+            let (weight, allowed) = (shape.fairness, "a finite number ≥ 0 (unit of the objective)");
             SceneError::require(weight > 0.0 && weight.is_finite(), "surface.fairness.weight", weight, allowed)?;
-            parts.push((first, bending_rows(&heights.surface()?, block.size) * weight.sqrt()));
+            parts.push((first, shape.bending_rows(body.start_block().as_ref())? * weight.sqrt()));
         }
         first += body.control_count();
     }

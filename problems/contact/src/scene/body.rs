@@ -4,7 +4,7 @@ use crate::body::elasticity::Material;
 use crate::body::mesh::Mesh;
 use crate::error::SceneError;
 use crate::scene::{Block, CounterSurface, Geometry, Load, Support};
-use crate::shape::{HeightShape, ShapeScene, ShapedFace};
+use crate::shape::{LatticeShape, ShapedFace};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ pub struct BodyScene {
     /// The loads.
     pub loads: Vec<Load>,
     /// What its controls move; none for a body of fixed shape.
-    pub shape: Option<ShapeScene>,
+    pub shape: Option<LatticeShape>,
 }
 
 impl BodyScene {
@@ -42,12 +42,22 @@ impl BodyScene {
         }
     }
 
-    /// The height surface that shapes the body, where one does.
-    pub fn heights(&self) -> Option<&HeightShape> {
-        match &self.shape {
-            Some(ShapeScene::Heights(heights)) => Some(heights),
-            _ => None,
+    /// Its block at the start, where it is one: heights that are controls begin at a plane.
+    pub fn start_block(&self) -> Option<Block> {
+        let mut block = self.block()?.clone();
+        if let Some(heights) = self.heights() {
+            let start = CounterSurface::Plane { height: heights.start };
+            match heights.face() {
+                Some(ShapedFace::Bottom) => block.bottom = start,
+                Some(ShapedFace::Top) | None => block.top = start,
+            }
         }
+        Some(block)
+    }
+
+    /// Its shape where the controls are heights of a face of a block.
+    pub fn heights(&self) -> Option<&LatticeShape> {
+        self.shape.as_ref().filter(|shape| shape.face().is_some())
     }
 
     /// The mesh at the start, and the number of pieces that it is to be divided into where it does not say so itself.
@@ -57,35 +67,24 @@ impl BodyScene {
     pub fn mesh(&self) -> Result<(Arc<Mesh>, usize), SceneError> {
         match &self.geometry {
             Geometry::Mesh(geometry) => Ok((Arc::clone(&geometry.mesh), geometry.piece_count())),
-            Geometry::Block(block) => {
-                let mut block = block.clone();
-                if let Some(heights) = self.heights() {
-                    let start = CounterSurface::Plane { height: heights.start_height };
-                    match heights.face {
-                        ShapedFace::Top => block.top = start,
-                        ShapedFace::Bottom => block.bottom = start,
-                    }
-                }
-                Ok((Arc::new(block.mesh()?), 1))
-            }
+            Geometry::Block(block) => Ok((Arc::new(self.start_block().as_ref().unwrap_or(block).mesh()?), 1)),
         }
     }
 
     /// The largest move of a node across x₃ by its controls, mm.
     pub(crate) fn reach(&self) -> f64 {
         match &self.shape {
-            Some(ShapeScene::Lattice(lattice)) => {
-                3.0_f64.sqrt() * lattice.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+            Some(shape) if shape.face().is_none() => {
+                3.0_f64.sqrt() * shape.range.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
             }
-            Some(ShapeScene::Heights(_)) | None => 0.0,
+            _ => 0.0,
         }
     }
 
     /// The body moved by a vector, mm: its mesh, or its block.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for a height surface moved along
-    /// x₃, whose heights are controls.
+    /// [`SceneError::OutOfRange`] for a body moved along x₃ whose heights are controls.
     pub fn moved(mut self, by: [f64; 3]) -> Result<Self, SceneError> {
         if self.heights().is_some() && by[2] != 0.0 {
             let allowed = "0 along x3 for a body whose heights are controls";
@@ -106,6 +105,6 @@ impl BodyScene {
 
     /// Number of controls.
     pub fn control_count(&self) -> usize {
-        self.shape.as_ref().map_or(0, ShapeScene::control_count)
+        self.shape.as_ref().map_or(0, LatticeShape::control_count)
     }
 }

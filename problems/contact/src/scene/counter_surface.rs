@@ -2,7 +2,6 @@
 
 use crate::error::SceneError;
 use crate::scene::HeightGrid;
-use crate::shape::Pieces;
 use serde::{Deserialize, Serialize};
 
 /// Analytic surfaces of the paper, a plane, indenters with known solutions, and heights on a grid.
@@ -167,59 +166,5 @@ impl CounterSurface {
             Self::Grid(grid) => grid.height(x1, x2),
             Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. } => f64::NAN,
         }
-    }
-
-    /// The smooth pieces of the surface over a base of `size` mm; none for a punch, which has a step, and for surfaces
-    /// that are no heights.
-    ///
-    /// A sphere is most curved where it is farthest from its lowest point: |vᵀ∇²F v| ≤ |v|² R²/(R² − r²)^{3/2}.
-    pub fn pieces(&self, size: [f64; 2]) -> Option<Pieces> {
-        let whole = size.map(|length| vec![0.0, length]);
-        let sphere = |radius: f64, [c1, c2]: [f64; 2]| {
-            let farthest = [c1.abs().max((size[0] - c1).abs()), c2.abs().max((size[1] - c2).abs())];
-            let depth = radius * radius - farthest.iter().map(|x| x * x).sum::<f64>();
-            let curvature = radius * radius / depth.powf(1.5);
-            [curvature, 0.0, curvature]
-        };
-        let (lines, curvature) = match self {
-            &Self::Waves { first, second, period, .. } => {
-                let square = (2.0 * std::f64::consts::PI / period).powi(2);
-                (whole, [square * first.abs(), 0.0, square * second.abs()])
-            }
-            &Self::Sphere { radius, centre, .. } => (whole, sphere(radius, centre)),
-            Self::Punch { .. } | Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. } => return None,
-            Self::Plane { .. } => (whole, [0.0; 3]),
-            Self::Grid(grid) => return Some(grid.pieces()),
-        };
-        Some(Pieces { lines, curvature })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn curvatures_keep_within_the_bounds_and_come_near() {
-        let size = [10.0, 7.0];
-        for surface in [
-            CounterSurface::Waves { base: 3.0, first: -0.5, second: 0.7, period: 5.0, origin: [0.6, -0.3] },
-            CounterSurface::Sphere { apex: 1.0, radius: 20.0, centre: [0.0; 2] },
-            CounterSurface::Sphere { apex: 1.0, radius: 30.0, centre: [4.0, 9.0] },
-        ] {
-            let [c11, c12, c22] = surface.pieces(size).expect("smooth").curvature;
-            // Second differences: rounding is 1e-15/step², and their error of higher order is small on this step.
-            let (mut largest, step) = (0.0_f64, 1e-3);
-            for (i, j, turn) in (0..40 * 40 * 8).map(|index| (index / 320 + 1, index / 8 % 40 + 1, index % 8)) {
-                let [x1, x2] = [size[0] * f64::from(i) / 41.0, size[1] * f64::from(j) / 41.0];
-                let (v2, v1) = (f64::from(turn) * std::f64::consts::PI / 8.0).sin_cos();
-                let at = |way: f64| surface.height(x1 + way * step * v1, x2 + way * step * v2);
-                let curvature = (at(1.0) - 2.0 * at(0.0) + at(-1.0)).abs() / (step * step);
-                largest = largest.max(curvature / (c11 * v1 * v1 + 2.0 * c12 * (v1 * v2).abs() + c22 * v2 * v2));
-            }
-            assert!((0.8..1.0 + 1e-6).contains(&largest), "{surface:?}: {largest}");
-        }
-        assert_eq!(CounterSurface::Plane { height: 3.0 }.pieces(size).map(|plane| plane.curvature), Some([0.0; 3]));
-        assert_eq!(CounterSurface::Punch { height: 1.0, half_width: 2.0, relief: 3.0, centre: 0.0 }.pieces(size), None);
     }
 }

@@ -4,7 +4,7 @@ use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
 use crate::names::find;
 use crate::scene::{Block, BodyScene, ContactScene, CounterSurface, Geometry, Held, LoadKind, Master, NormalKind};
-use crate::shape::{HeightShape, ShapeBounds, ShapeScene, ShapedFace};
+use crate::shape::{Coordinates, LatticeShape, ShapedFace};
 use serde::{Deserialize, Serialize};
 
 /// A contact problem: elastic bodies, what touches what, and what the controls move.
@@ -23,14 +23,13 @@ pub struct Scene {
 pub(crate) enum Opposite<'s> {
     /// Heights over (x₁, x₂) that do not change.
     Heights(&'s CounterSurface),
-    /// A height surface of another body.
+    /// Heights of another body that are controls.
     Shaped(usize),
 }
 
 impl Scene {
-    /// The body whose shape the controls change and its block, where there is one such body and it is a block that a
-    /// height surface shapes.
-    pub fn shaped_block(&self) -> Option<(&Block, &HeightShape)> {
+    /// The only body with controls and its block, where the controls are heights of a face.
+    pub fn shaped_block(&self) -> Option<(&Block, &LatticeShape)> {
         let mut shaped = self.bodies.iter().filter(|body| body.shape.is_some());
         match (shaped.next(), shaped.next()) {
             (Some(body), None) => Some((body.block()?, body.heights()?)),
@@ -38,9 +37,14 @@ impl Scene {
         }
     }
 
-    /// The height surface of the only body with controls, where it has one.
-    pub fn heights(&self) -> Option<&HeightShape> {
+    /// The shape of the only body with controls, where these are heights of a face.
+    pub fn heights(&self) -> Option<&LatticeShape> {
         self.shaped_block().map(|(_, heights)| heights)
+    }
+
+    /// The shapes of all bodies that controls move.
+    pub fn shapes(&self) -> impl Iterator<Item = &LatticeShape> {
+        self.bodies.iter().filter_map(|body| body.shape.as_ref())
     }
 
     /// Whether all bodies are blocks.
@@ -65,14 +69,10 @@ impl Scene {
         self.with_blocks(|block| (block.bricks, block.subdomains) = (bricks, subdomains))
     }
 
-    /// The scene with changed height surfaces; lattices stay as they are.
+    /// The scene with changed shapes of its bodies.
     #[must_use]
-    pub fn with_heights(mut self, change: impl Fn(&mut HeightShape)) -> Self {
-        for body in &mut self.bodies {
-            if let Some(ShapeScene::Heights(heights)) = &mut body.shape {
-                change(heights);
-            }
-        }
+    pub fn with_shapes(mut self, change: impl Fn(&mut LatticeShape)) -> Self {
+        self.bodies.iter_mut().filter_map(|body| body.shape.as_mut()).for_each(change);
         self
     }
 
@@ -100,7 +100,7 @@ impl Scene {
 
     /// The controls at the start, body by body: heights, or no displacement, mm.
     pub fn start(&self) -> Vec<f64> {
-        self.bodies.iter().filter_map(|body| body.shape.as_ref()).flat_map(ShapeScene::start).collect()
+        self.shapes().flat_map(LatticeShape::start_controls).collect()
     }
 
     /// What messages call a contact.
@@ -126,7 +126,7 @@ impl Scene {
                 _ => continue,
             };
             let block = self.bodies.get(other.body)?.block()?;
-            let shaped = self.bodies[other.body].heights().map(|heights| heights.face);
+            let shaped = self.bodies[other.body].heights().and_then(LatticeShape::face);
             return [ShapedFace::Bottom, ShapedFace::Top].into_iter().find_map(|side| {
                 (other.face == side.block_face().name()).then(|| match side {
                     _ if shaped == Some(side) => Opposite::Shaped(other.body),
@@ -219,44 +219,34 @@ impl Scene {
 
     fn validate_body(&self, index: usize) -> Result<(), SceneError> {
         let body = &self.bodies[index];
-        if let Some(ShapeScene::Lattice(lattice)) = &body.shape {
-            lattice.validate()?;
+        if let Some(shape) = &body.shape {
+            shape.validate()?;
         }
-        match (&body.geometry, body.heights()) {
-            (Geometry::Mesh(_), Some(_)) => {
-                let allowed = "a lattice: a height surface shapes blocks only";
-                Err(SceneError::out_of_range("surface", "a height surface of a mesh", allowed))
-            }
-            (Geometry::Mesh(_), None) => Ok(()),
-            (Geometry::Block(block), heights) => {
-                block.validate(&format!("{}.block", body.name))?;
-                if let Some(heights) = heights {
-                    self.validate_heights(index, block, heights)?;
-                }
-                self.validate_block(index, block)
-            }
+        let Geometry::Block(block) = &body.geometry else {
+            let in_block = body.shape.as_ref().is_some_and(|shape| shape.coordinates == Coordinates::Block);
+            let allowed = "a lattice in space: coordinates along bricks are those of blocks only";
+            return SceneError::require(!in_block, "surface", "the coordinates of a block for a mesh", allowed);
+        };
+        block.validate(&format!("{}.block", body.name))?;
+        if let Some(heights) = body.heights() {
+            self.validate_heights(index, block, heights)?;
         }
+        self.validate_block(index, block)
     }
 
-    /// Checks that there is room between the bounds of a height surface and what lies opposite to it.
-    fn validate_heights(&self, index: usize, block: &Block, heights: &HeightShape) -> Result<(), SceneError> {
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        let height = heights.start_height;
-        SceneError::require(positive(height), "surface.start", height, "a finite mean height > 0 mm")?;
-        let ShapeBounds { minimum_height, volume: [least, largest], .. } = heights.bounds;
-        let volume = format!("[{least}, {largest}]");
-        let allowed = "the smallest volume, then the largest (mm³)";
-        SceneError::require(least <= largest, "admissible.volume", volume, allowed)?;
-        let Some(Opposite::Heights(surface)) = self.opposite(index, heights.face) else { return Ok(()) };
-        let what = format!("what lies opposite to {} of {}", heights.face.block_face().name(), self.bodies[index].name);
+    /// Checks that there is room between the bounds of heights and what lies opposite to them.
+    fn validate_heights(&self, index: usize, block: &Block, heights: &LatticeShape) -> Result<(), SceneError> {
+        let Some(face) = heights.face() else { return Ok(()) };
+        let Some(Opposite::Heights(surface)) = self.opposite(index, face) else { return Ok(()) };
+        let what = format!("what lies opposite to {} of {}", face.block_face().name(), self.bodies[index].name);
         let place = |[x1, x2]: [f64; 2]| format!("{what} at ({x1}, {x2})");
         let finite = "finite heights over the whole base";
-        for at in heights.surface()?.places(block.size).map(|at| block.grid().moved(at)) {
+        for at in heights.height_places(block) {
             let height = surface.height(at[0], at[1]);
             SceneError::require(height.is_finite(), place(at), height, finite)?;
-            if heights.face == ShapedFace::Top {
-                let least = block.bottom.height(at[0], at[1]) + minimum_height;
-                let allowed = format!("at least admissible.minimum_height = {minimum_height} (mm)");
+            if let (ShapedFace::Top, Some(thickness)) = (face, heights.thickness) {
+                let least = block.bottom.height(at[0], at[1]) + thickness;
+                let allowed = format!("at least admissible.minimum_height = {thickness} (mm)");
                 SceneError::require(height >= least, place(at), height, allowed)?;
             }
         }
@@ -271,13 +261,9 @@ impl Scene {
     fn validate_block(&self, index: usize, block: &Block) -> Result<(), SceneError> {
         let body = &self.bodies[index];
         let name = &body.name;
-        let start = |face: ShapedFace, surface: &CounterSurface, [x1, x2]: [f64; 2]| match body.heights() {
-            Some(heights) if heights.face == face => heights.start_height,
-            _ => surface.height(x1, x2),
-        };
-        for at @ [x1, x2] in block.grid().places() {
-            let bottom = start(ShapedFace::Bottom, &block.bottom, at);
-            let top = start(ShapedFace::Top, &block.top, at);
+        let start = body.start_block().unwrap_or_else(|| block.clone());
+        for [x1, x2] in block.grid().places() {
+            let [bottom, top] = [&start.bottom, &start.top].map(|surface| surface.height(x1, x2));
             let place = || format!("{name}.block.bottom at ({x1}, {x2})");
             SceneError::require(bottom.is_finite(), place(), bottom, "finite heights over the whole base")?;
             let allowed = format!("above the bottom, which has the height {bottom} mm at ({x1}, {x2})");

@@ -2,7 +2,6 @@
 
 use crate::error::SceneError;
 use crate::scene::jet::Jet;
-use crate::shape::Pieces;
 use serde::{Deserialize, Serialize};
 
 /// Heights on a uniform grid over a base, its edges included.
@@ -88,21 +87,6 @@ impl HeightGrid {
         }
     }
 
-    /// The smooth pieces: the cells of the grid, on each of which the surface is bilinear.
-    pub fn pieces(&self) -> Pieces {
-        let cells = self.counts.map(|count| count - 1);
-        let lines = std::array::from_fn(|axis: usize| {
-            let step = self.size[axis] / cells[axis] as f64;
-            (0..=cells[axis]).map(|index| self.origin[axis] + step * index as f64).collect()
-        });
-        let at = |i: usize, j: usize| self.heights[i * self.counts[1] + j];
-        let twists = (0..cells[0]).flat_map(|i| {
-            (0..cells[1]).map(move |j| (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)).abs())
-        });
-        let cell = self.size[0] / cells[0] as f64 * self.size[1] / cells[1] as f64;
-        Pieces { lines, curvature: [0.0, twists.fold(0.0, f64::max) / cell, 0.0] }
-    }
-
     /// Cell along an axis and the position in it.
     fn place(&self, axis: usize, x: f64) -> (usize, f64) {
         let last = self.counts[axis] - 1;
@@ -125,7 +109,6 @@ mod tests {
         for (x, y) in [(0.0, 0.0), (4.0, 2.0), (1.3, 0.7), (3.9, 1.99)] {
             assert!((grid.height(x, y) - surface(x, y)).abs() < 1e-13);
         }
-        assert!((grid.pieces().curvature[1] - 0.125).abs() < 1e-14 && grid.pieces().lines[0] == [0.0, 2.0, 4.0]);
         assert!(HeightGrid::new([1.0, 1.0], [2, 2], vec![0.0; 3]).is_err());
         let refusal = HeightGrid::new([1.0, 1.0], [2, 2], vec![0.0, 0.0, f64::NAN, 0.0]).expect_err("no number");
         assert!(refusal.to_string().starts_with("height (1, 0) of a grid = NaN is not allowed"), "{refusal}");

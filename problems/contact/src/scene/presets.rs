@@ -4,22 +4,16 @@ use crate::body::elasticity::Material;
 use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
 use crate::scene::{Block, BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, Master, Scene, Support};
-use crate::shape::{HeightShape, ShapeBounds, ShapeScene, ShapedFace, SplineKind};
+use crate::shape::{LatticeShape, ShapedFace};
 
 const ALONG_X1: [bool; 3] = [true, false, false];
 const ALONG_X2: [bool; 3] = [false, true, false];
 const ALONG_X3: [bool; 3] = [false, false, true];
 
-/// The height surface of both examples: a cubic B-spline on 6 × 6 control points.
-fn surface(bounds: ShapeBounds, start_height: f64) -> Option<ShapeScene> {
-    Some(ShapeScene::Heights(HeightShape {
-        face: ShapedFace::Top,
-        spline: SplineKind::BSpline(3),
-        control_points: [6, 6],
-        bounds,
-        start_height,
-        fairness: 0.0,
-    }))
+/// The shape of both examples: heights of the top, a cubic B-spline on 6 × 6 control points.
+fn heights(thickness: f64, volume: [f64; 2], start: f64) -> Option<LatticeShape> {
+    let heights = LatticeShape::heights(ShapedFace::Top, [6, 6], [3, 3], start);
+    Some(LatticeShape { thickness: Some(thickness), slope: Some(5.0), volume: Some(volume), ..heights })
 }
 
 /// Example 5.1: an elastic block pressed from below against a rigid wavy obstacle.
@@ -31,7 +25,7 @@ pub fn signorini() -> Result<Scene, SceneError> {
     let lower = BodyScene {
         supports: vec![Support::new(BlockFace::X1Min, [true, true, false])],
         loads: vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, 3000.0])],
-        shape: surface(ShapeBounds { minimum_height: 50.0, slope: 5.0, volume: [0.8e6, 1.2e6] }, 100.0),
+        shape: heights(50.0, [0.8e6, 1.2e6], 100.0),
         ..BodyScene::new("lower", block, Material::new(1.1e5, 0.33)?)
     };
     let obstacle = Master::Obstacle(CounterSurface::Waves {
@@ -56,7 +50,7 @@ pub fn hertz() -> Result<Scene, SceneError> {
     let indenter = Block { bottom: sphere, top: CounterSurface::Plane { height: 20.0 }, ..block.clone() };
     let mut lower = BodyScene {
         supports: symmetry(),
-        shape: surface(ShapeBounds { minimum_height: 5.0, slope: 5.0, volume: [800.0, 1200.0] }, 10.0),
+        shape: heights(5.0, [800.0, 1200.0], 10.0),
         ..BodyScene::new("lower", Geometry::Block(block), Material::new(7.0e4, 0.35)?)
     };
     lower.supports.push(Support::new(BlockFace::Bottom, ALONG_X3));

@@ -1,48 +1,124 @@
-//! How much a height surface bends.
+//! How much the net of controls of a lattice bends.
 //!
 //! ```text
-//! αᵀBα = ∫ (∂₁₁F)² + 2 (∂₁₂F)² + (∂₂₂F)²     for the control net: divided differences between Greville abscissae
+//! αᵀBα = ∫ Σ_a (∂_aa F)² + 2 Σ_{a<b} (∂_ab F)²     divided differences between Greville abscissae, along lines of the coordinates
 //! ```
-//! The net of a plane lies in that plane, and nothing bends; the net exists for every degree, where second derivatives
-//! do not.
+//! A coordinate across a body of which one face moves counts for nothing: the net is that of the face. Over d
+//! coordinates the integral is divided by ℓ^{d−2}, ℓ their mean length, so that it has no unit. The net of a plane lies
+//! in that plane, and nothing bends; the net exists for every degree, where second derivatives do not.
 
-use crate::shape::SplineSurface;
-use nonsmooth::Matrix;
+use crate::error::SceneError;
+use crate::scene::{Block, Scene};
+use crate::shape::LatticeShape;
+use nonsmooth::{Matrix, Vector};
 
-/// B of the controls of a surface over a base of `size` mm.
-pub fn bending(surface: &SplineSurface, size: [f64; 2]) -> Matrix {
-    let parts = bending_parts(surface, size).map(|rows| rows.tr_mul(&rows));
-    parts.into_iter().reduce(|sum, part| sum + part).unwrap_or_default()
+/// A coordinate of the net: the operators that act along it.
+struct Line {
+    shares: Matrix,
+    slopes: Matrix,
+    curvatures: Matrix,
+    length: f64,
 }
 
-/// Rows R with B = RᵀR: the bending is |Rα|².
-pub(crate) fn bending_rows(surface: &SplineSurface, size: [f64; 2]) -> Matrix {
-    let parts = bending_parts(surface, size);
-    let mut rows = Matrix::zeros(parts.iter().map(Matrix::nrows).sum(), parts[0].ncols());
+impl LatticeShape {
+    /// Rows R with B = RᵀR: the bending is |Rα|² in the controls; `block`: the block at the start, for lattices in its
+    /// coordinates.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] when there are too few control points for the degree.
+    pub fn bending_rows(&self, block: Option<&Block>) -> Result<Matrix, SceneError> {
+        let (bases, lengths) = (self.bases()?, self.coordinates.lengths(block));
+        let line = |axis: usize| {
+            let places: Vec<f64> = bases[axis].greville().into_iter().map(|place| lengths[axis] * place).collect();
+            Line {
+                shares: shares(&places, lengths[axis]),
+                slopes: slopes(&places),
+                curvatures: curvatures(&places),
+                length: lengths[axis],
+            }
+        };
+        let lines: [Option<Line>; 3] = std::array::from_fn(|axis| (!self.is_across(axis)).then(|| line(axis)));
+        let along = |axis: usize, order: usize| match (&lines[axis], order) {
+            (Some(line), 0) => line.shares.clone(),
+            (Some(line), 1) => line.slopes.clone(),
+            (Some(line), _) => line.curvatures.clone(),
+            // The layer that moves.
+            (None, _) if self.frozen[axis][0] == 0 => Matrix::from_row_slice(1, 2, &[1.0, 0.0]),
+            (None, _) => Matrix::from_row_slice(1, 2, &[0.0, 1.0]),
+        };
+        let whole =
+            |orders: [usize; 3]| along(0, orders[0]).kronecker(&along(1, orders[1])).kronecker(&along(2, orders[2]));
+        let own: Vec<&Line> = lines.iter().flatten().collect();
+        let mean = own.iter().map(|line| line.length).product::<f64>().powf((own.len() as f64).recip());
+        let scale = mean.powi(2 - own.len() as i32).sqrt();
+        let axes: Vec<usize> = (0..3).filter(|&axis| lines[axis].is_some()).collect();
+        let controls = self.points_of_controls();
+        let mut parts = Vec::new();
+        for (place, &a) in axes.iter().enumerate() {
+            for &b in &axes[place..] {
+                let mut orders = [0; 3];
+                orders[a] += 1;
+                orders[b] += 1;
+                let rows = whole(orders) * if a == b { scale } else { scale * std::f64::consts::SQRT_2 };
+                parts.extend(controls.iter().map(|points| &rows * points));
+            }
+        }
+        Ok(stacked(&parts, self.control_count()))
+    }
+
+    /// From the controls to the values of all control points, a matrix per direction.
+    fn points_of_controls(&self) -> Vec<Matrix> {
+        let (count, controls) = (self.control_points.iter().product(), self.controls());
+        let of = |way: usize| {
+            let mut matrix = Matrix::zeros(count, controls.len());
+            for (number, control) in controls.iter().enumerate() {
+                for &(point, _, factor) in control.iter().filter(|(_, own, _)| *own == way) {
+                    matrix[(point, number)] += factor;
+                }
+            }
+            matrix
+        };
+        self.ways().into_iter().map(of).collect()
+    }
+}
+
+impl Scene {
+    /// B of the controls of all bodies: their bending is αᵀBα.
+    ///
+    /// # Errors
+    /// As [`LatticeShape::bending_rows`].
+    pub fn bending(&self) -> Result<Matrix, SceneError> {
+        let mut whole = Matrix::zeros(self.control_count(), self.control_count());
+        let mut first = 0;
+        for body in &self.bodies {
+            if let Some(shape) = &body.shape {
+                let rows = shape.bending_rows(body.start_block().as_ref())?;
+                let count = rows.ncols();
+                whole.view_mut((first, first), (count, count)).copy_from(&rows.tr_mul(&rows));
+                first += count;
+            }
+        }
+        Ok(whole)
+    }
+}
+
+/// Some rows below each other.
+fn stacked(parts: &[Matrix], columns: usize) -> Matrix {
+    let mut rows = Matrix::zeros(parts.iter().map(Matrix::nrows).sum(), columns);
     let mut first = 0;
-    for part in &parts {
+    for part in parts {
         rows.rows_mut(first, part.nrows()).copy_from(part);
         first += part.nrows();
     }
     rows
 }
 
-/// The rows of ∂₁₁, √2 ∂₁₂ and ∂₂₂.
-fn bending_parts(surface: &SplineSurface, size: [f64; 2]) -> [Matrix; 3] {
-    let places = surface.control_places(size);
-    let [shares, slopes, curvatures] = [shares, slopes, curvatures].map(|rows| [rows(&places[0]), rows(&places[1])]);
-    [
-        curvatures[0].kronecker(&shares[1]),
-        slopes[0].kronecker(&slopes[1]) * std::f64::consts::SQRT_2,
-        shares[0].kronecker(&curvatures[1]),
-    ]
-}
-
-/// Roots of the lengths that belong to the places, on the diagonal.
-fn shares(places: &[f64]) -> Matrix {
+/// Roots of the lengths that belong to the places, on the diagonal; of a single one, the whole length.
+fn shares(places: &[f64], length: f64) -> Matrix {
     let gap = |i: usize| places.get(i + 1).map_or(0.0, |next| next - places[i]);
-    let lengths = (0..places.len()).map(|i| 0.5 * (gap(i) + i.checked_sub(1).map_or(0.0, gap)));
-    Matrix::from_diagonal(&nonsmooth::Vector::from_iterator(places.len(), lengths.map(f64::sqrt)))
+    let own = |i: usize| if places.len() == 1 { length } else { 0.5 * (gap(i) + i.checked_sub(1).map_or(0.0, gap)) };
+    let lengths = (0..places.len()).map(|i| own(i).sqrt());
+    Matrix::from_diagonal(&Vector::from_iterator(places.len(), lengths))
 }
 
 /// Slopes between neighbours, times the roots of their distances.
@@ -71,26 +147,49 @@ fn curvatures(places: &[f64]) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::SplineKind;
-    use nonsmooth::Vector;
+    use crate::shape::{Coordinates, Directions, ShapedFace};
+
+    /// |Rα|² of a function at the Greville abscissae of a lattice of degree 2.
+    fn energy(lattice: &LatticeShape, block: Option<&Block>, value: impl Fn([f64; 3]) -> f64) -> f64 {
+        let lengths = lattice.coordinates.lengths(block);
+        let places = lattice.bases().expect("valid").map(|basis| basis.greville());
+        let counts = lattice.control_points;
+        let point = |control: &crate::shape::lattice::Control| {
+            let point = control[0].0;
+            let index = [point / (counts[1] * counts[2]), point / counts[2] % counts[1], point % counts[2]];
+            value(std::array::from_fn(|axis| lengths[axis] * places[axis][index[axis]]))
+        };
+        let controls = Vector::from_vec(lattice.controls().iter().map(point).collect());
+        let rows = lattice.bending_rows(block).expect("valid");
+        let (squares, form) = ((&rows * &controls).norm_squared(), controls.dot(&(rows.tr_mul(&rows) * &controls)));
+        // The quadratic form loses the digits of 1/h⁴, the squares of differences do not.
+        assert!((form - squares).abs() < 1e-8 * (1.0 + squares), "{form} {squares}");
+        squares
+    }
 
     #[test]
     fn planes_do_not_bend_and_a_bowl_bends_as_its_integral_says() {
-        let (size, surface) = ([3.0, 5.0], SplineSurface::new(SplineKind::BSpline(2), [40, 40]).expect("valid"));
-        let [first, second] = surface.control_places(size);
-        let energy = |height: &dyn Fn(f64, f64) -> f64| {
-            let heights = first.iter().flat_map(|&x| second.iter().map(move |&y| (x, y)));
-            let controls = Vector::from_vec(heights.map(|(x, y)| height(x, y)).collect());
-            let (rows, whole) = (bending_rows(&surface, size), bending(&surface, size));
-            let (squares, form) = ((rows * &controls).norm_squared(), controls.dot(&(whole * &controls)));
-            // The quadratic form loses the digits of 1/h⁴, the squares of differences do not.
-            assert!((form - squares).abs() < 1e-8 * (1.0 + squares), "{form} {squares}");
-            squares
-        };
-        assert!(energy(&|x, y| 2.0 + 0.3 * x - 0.7 * y) < 1e-18);
+        let block = Block::new([3.0, 5.0], 7.0, [1; 3], [1; 3]);
+        let bowl = |[x, y, _]: [f64; 3]| x * x + 0.5 * x * y + 0.3 * y * y;
         // (2² + 2·0.5² + 0.6²)·15 mm², but for the half intervals at the edges.
         let exact = (4.0 + 0.5 + 0.36) * 15.0;
-        let found = energy(&|x, y| x * x + 0.5 * x * y + 0.3 * y * y);
-        assert!((found / exact - 1.0).abs() < 0.05, "{found} {exact}");
+        for face in [ShapedFace::Top, ShapedFace::Bottom] {
+            let surface = LatticeShape::heights(face, [40, 40], [2, 2], 7.0);
+            assert!(energy(&surface, Some(&block), |[x, y, _]| 2.0 + 0.3 * x - 0.7 * y) < 1e-18);
+            let found = energy(&surface, Some(&block), bowl);
+            assert!((found / exact - 1.0).abs() < 0.05, "{found} {exact}");
+        }
+        // The same in space: over the thickness of 7 mm, divided by the mean length.
+        let edges = [[3.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 7.0]];
+        let box_of = |control_points: [usize; 3]| LatticeShape {
+            degrees: control_points.map(|count| 2.min(count - 1)),
+            directions: Directions::Axes([false, true, false]),
+            ..LatticeShape::new(Coordinates::Cartesian { corner: [0.0; 3], edges }, control_points, [-1.0, 1.0])
+        };
+        for points in [[40, 40, 1], [40, 40, 3]] {
+            let found = energy(&box_of(points), None, bowl);
+            let expected = exact * 7.0 / 105.0_f64.cbrt();
+            assert!((found / expected - 1.0).abs() < 0.05, "{points:?}: {found} {expected}");
+        }
     }
 }

@@ -67,18 +67,6 @@ impl Basis {
         &self.knots
     }
 
-    /// Basis and coefficients of the derivative p (α_{i+1} − α_i)/(t_{i+p+1} − t_{i+1}) of Σ α_i N_i between the knots;
-    /// none for steps.
-    pub fn derivative(&self, coefficients: &[f64]) -> Option<(Self, Vec<f64>)> {
-        let (degree, count) = (self.degree.checked_sub(1)?, self.count - 1);
-        let slope = |i: usize| {
-            let span = self.knots[i + self.degree + 1] - self.knots[i + 1];
-            self.degree as f64 * (coefficients[i + 1] - coefficients[i]) / span
-        };
-        let knots = self.knots[1..self.knots.len() - 1].to_vec();
-        Some((Self { degree, count, knots }, (0..count).map(slope).collect()))
-    }
-
     /// Number of basis functions.
     pub fn count(&self) -> usize {
         self.count

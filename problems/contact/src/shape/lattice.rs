@@ -1,43 +1,43 @@
-//! Free-form deformation by a lattice of control points: x = x₀ + Σ B_i(ξ₁) B_j(ξ₂) B_l(ξ₃) d α_ijl.
+//! Free-form deformation by a lattice of control points: x = x₀ + Σ B_i(ξ₁) B_j(ξ₂) B_l(ξ₃) d (α_ijl − α⁰).
 //!
 //! ```text
 //! Cartesian:    ξ along three axes of a box, d the axes of the box, or the normal of a face
 //! cylindrical:  ξ along radius, angle and axis, d the unit vectors there: one control along the angle makes a revolved profile,
 //!               one control along an axis of a box an extruded one
+//! block:        ξ along the bricks; two control points across the thickness, of which one layer does not move: heights of a face
 //! ```
 //! A B-spline of degree count − 1 is the Bernstein basis. Nodes outside the box do not move. Where supports hold nodes,
-//! these do not move in the held directions.
+//! these do not move in the held directions, unless the lattice says otherwise.
 
-use crate::body::mesh::{Mesh, bounding_box};
+use crate::body::mesh::BlockFace;
 use crate::error::SceneError;
-use crate::names::{find_face, nodes_of};
-use crate::patches::MiddlePoint;
-use crate::shape::BodyMap;
+use crate::scene::Block;
 use crate::shape::bspline::Basis;
+use crate::shape::coordinates::Coordinates;
+use crate::shape::surface::SplineSurface;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
-/// Which coordinates a lattice has.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Coordinates {
-    /// Along the three axes of a box with a corner and edges that are perpendicular to each other.
-    Cartesian {
-        /// Corner of the box, mm.
-        corner: [f64; 3],
-        /// Its edges, mm.
-        edges: [[f64; 3]; 3],
-    },
-    /// Radius, angle and height about an axis.
-    Cylindrical {
-        /// A point of the axis, from which heights are measured, mm.
-        point: [f64; 3],
-        /// Direction of the axis.
-        axis: [f64; 3],
-        /// Direction of angle 0, across the axis.
-        zero: [f64; 3],
-        /// Least and largest radius, mm; angle, radians; height, mm.
-        ranges: [[f64; 2]; 3],
-    },
+/// The face of a block whose heights controls are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ShapedFaceName", transform = crate::schema::names_only))]
+pub enum ShapedFace {
+    /// The upper surface.
+    #[default]
+    Top,
+    /// The lower surface.
+    Bottom,
+}
+
+impl ShapedFace {
+    /// The face of the block.
+    pub fn block_face(self) -> BlockFace {
+        match self {
+            Self::Top => BlockFace::Top,
+            Self::Bottom => BlockFace::Bottom,
+        }
+    }
 }
 
 /// Which ways the control points move.
@@ -70,10 +70,26 @@ pub struct LatticeShape {
     pub symmetric: [bool; 3],
     /// Layers of control points that do not move at both ends of every coordinate.
     pub frozen: [[usize; 2]; 3],
-    /// Least and largest displacement of a control point, mm.
-    pub displacement: [f64; 2],
+    /// α⁰, the value of every control at the start, mm: 0 where controls are displacements, the height of a plane where
+    /// they are heights of a face ([`LatticeShape::face`]).
+    pub start: f64,
+    /// Least and largest value of a control, mm.
+    pub range: [f64; 2],
     /// Bounds of the displacement of nodes.
     pub node_bounds: Vec<NodeBound>,
+    /// Least distance of a height from the other face of its block, mm. Heights with this bound also stay on their side
+    /// of what lies opposite to their face in a contact.
+    pub thickness: Option<f64>,
+    /// Largest slope of the net of controls: the difference of neighbours along a coordinate over the distance of their
+    /// places.
+    pub slope: Option<f64>,
+    /// Least and largest volume of the body, mm³, for controls that move nodes along one axis of space. Of heights, the
+    /// measure below or above the spline keeps these bounds besides.
+    pub volume: Option<[f64; 2]>,
+    /// The factor of the bending in the objective, unit of Θ; the bending has no unit. 0: none.
+    pub fairness: f64,
+    /// Whether an optimization begins with several short attempts, one of them on a coarse net of controls.
+    pub attempts: bool,
 }
 
 /// A bound of a component of the displacement of nodes by the shape.
@@ -87,15 +103,85 @@ pub struct NodeBound {
     pub range: [f64; 2],
 }
 
-/// Distance over the extent of a lattice at which a point still counts as inside: rounding of mesh files.
-const INSIDE: f64 = 1e-9;
+/// Highest degree that is chosen without being asked for.
+const USUAL_DEGREE: usize = 3;
 
 /// A control: what it adds to which control points, as (control point, direction, factor).
-type Control = Vec<(usize, usize, f64)>;
+pub(crate) type Control = Vec<(usize, usize, f64)>;
+
+/// The controls that move a control point in a direction, as (control, factor).
+pub(crate) type Movers = HashMap<(usize, usize), Vec<(usize, f64)>>;
 
 impl LatticeShape {
+    /// A lattice of displacements along all its axes, of degree 3 or as high as the control points allow, whose controls
+    /// lie in a range (mm). Supports hold their nodes.
+    pub fn new(coordinates: Coordinates, control_points: [usize; 3], range: [f64; 2]) -> Self {
+        Self {
+            coordinates,
+            control_points,
+            degrees: control_points.map(|count| USUAL_DEGREE.min(count.saturating_sub(1))),
+            directions: Directions::Axes([true; 3]),
+            region: Vec::new(),
+            fixed: Vec::new(),
+            hold_supports: true,
+            symmetric: [false; 3],
+            frozen: [[0; 2]; 3],
+            start: 0.0,
+            range,
+            node_bounds: Vec::new(),
+            thickness: None,
+            slope: None,
+            volume: None,
+            fairness: 0.0,
+            attempts: false,
+        }
+    }
+
+    /// Heights of a face of a block, all at `start` (mm) at first: a lattice of degree 1 across the thickness, of which
+    /// the layer of the other face does not move. Supports do not hold heights.
+    pub fn heights(face: ShapedFace, control_points: [usize; 2], degrees: [usize; 2], start: f64) -> Self {
+        let ([n1, n2], [first, second]) = (control_points, degrees);
+        let still = if face == ShapedFace::Top { [1, 0] } else { [0, 1] };
+        Self {
+            degrees: [first, second, 1],
+            directions: Directions::Axes([false, false, true]),
+            hold_supports: false,
+            frozen: [[0; 2], [0; 2], still],
+            start,
+            attempts: true,
+            ..Self::new(Coordinates::Block, [n1, n2, 2], [f64::NEG_INFINITY, f64::INFINITY])
+        }
+    }
+
+    /// The face whose heights the controls are, index i·n₂ + j; none where they are displacements.
+    pub fn face(&self) -> Option<ShapedFace> {
+        let along_x3 = self.directions == Directions::Axes([false, false, true]) && !self.hold_supports;
+        let is_layer = (self.control_points[2], self.degrees[2]) == (2, 1) && self.frozen[..2] == [[0; 2]; 2];
+        let is_whole = self.region.is_empty() && self.fixed.is_empty() && self.symmetric == [false; 3];
+        let is_heights = self.coordinates == Coordinates::Block && along_x3 && is_layer && is_whole;
+        match self.frozen[2] {
+            [1, 0] if is_heights && self.start != 0.0 => Some(ShapedFace::Top),
+            [0, 1] if is_heights && self.start != 0.0 => Some(ShapedFace::Bottom),
+            _ => None,
+        }
+    }
+
+    /// The spline surface over the first two coordinates, of which heights are control values.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] when there are too few control points for the degree.
+    pub fn surface(&self) -> Result<SplineSurface, SceneError> {
+        let [first, second, _] = self.bases()?;
+        Ok(SplineSurface::new([first, second]))
+    }
+
+    /// Whether a coordinate goes across a body of which one face moves and the other does not.
+    pub(crate) fn is_across(&self, axis: usize) -> bool {
+        self.control_points[axis] == 2 && self.frozen[axis].iter().sum::<usize>() == 1
+    }
+
     /// The axes along which control points move: 0 to 2, or 0 alone for the normal of a face.
-    fn ways(&self) -> Vec<usize> {
+    pub(crate) fn ways(&self) -> Vec<usize> {
         match &self.directions {
             Directions::Axes(axes) => (0..3).filter(|&axis| axes[axis]).collect(),
             Directions::Normal(_) => vec![0],
@@ -103,7 +189,7 @@ impl LatticeShape {
     }
 
     /// The controls: by control point, then by direction; mirrored ones are one, those that symmetry holds none.
-    fn controls(&self) -> Vec<Control> {
+    pub(crate) fn controls(&self) -> Vec<Control> {
         let (counts, ways) = (self.control_points, self.ways());
         let index = |[i, j, l]: [usize; 3]| (i * counts[1] + j) * counts[2] + l;
         let mut controls = Vec::new();
@@ -145,9 +231,29 @@ impl LatticeShape {
         controls
     }
 
+    /// What every control point takes from the controls.
+    pub(crate) fn movers(&self) -> Movers {
+        let mut movers = Movers::new();
+        for (number, control) in self.controls().iter().enumerate() {
+            for &(point, way, factor) in control {
+                movers.entry((point, way)).or_default().push((number, factor));
+            }
+        }
+        movers
+    }
+
     /// Number of controls.
     pub fn control_count(&self) -> usize {
-        self.controls().len()
+        if self.symmetric != [false; 3] {
+            return self.controls().len();
+        }
+        let free = |axis: usize| self.control_points[axis].saturating_sub(self.frozen[axis].iter().sum());
+        (0..3).map(free).product::<usize>() * self.ways().len()
+    }
+
+    /// The controls at the start, mm.
+    pub fn start_controls(&self) -> Vec<f64> {
+        vec![self.start; self.control_count()]
     }
 
     /// Checks what needs no mesh.
@@ -156,281 +262,78 @@ impl LatticeShape {
     /// [`SceneError::OutOfRange`] naming the field.
     pub fn validate(&self) -> Result<(), SceneError> {
         self.bases()?;
-        match &self.coordinates {
-            Coordinates::Cartesian { edges, .. } => {
-                for (axis, edge) in edges.iter().enumerate() {
-                    let valid = length(*edge) > 0.0 && length(*edge).is_finite();
-                    let field = format!("lattice.edges[{axis}]");
-                    SceneError::require(valid, field, format!("{edge:?}"), "an edge of some length (mm)")?;
-                    for other in &edges[..axis] {
-                        let cosine = dot(*edge, *other) / (length(*edge) * length(*other));
-                        let allowed = "edges perpendicular to each other";
-                        SceneError::require(cosine.abs() < 1e-6, "lattice.edges", format!("{edges:?}"), allowed)?;
-                    }
-                }
+        self.coordinates.validate()?;
+        let [least, largest] = self.range;
+        let value = format!("[{least}, {largest}]");
+        match self.face() {
+            Some(_) => {
+                let valid = self.start > 0.0 && self.start.is_finite();
+                SceneError::require(valid, "surface.start", self.start, "a finite mean height > 0 mm")?;
+                SceneError::require(least < largest, "lattice.range", value, "the smaller number first (mm)")?;
+                let (points, allowed) = (&self.control_points[..2], "at least 2 along x1 and x2");
+                let valid = points.iter().all(|count| *count > 1);
+                SceneError::require(valid, "surface.control_points", format!("{points:?}"), allowed)?;
             }
-            Coordinates::Cylindrical { axis, zero, ranges, .. } => {
-                let valid = length(*axis) > 0.0 && length(cross(*axis, *zero)) > 1e-9 * length(*axis) * length(*zero);
-                let value = format!("axis {axis:?}, zero {zero:?}");
-                SceneError::require(valid, "lattice.axis", value, "two directions that are not parallel")?;
-                for [least, largest] in ranges {
-                    let value = format!("[{least}, {largest}]");
-                    SceneError::require(least < largest, "lattice.ranges", value, "the smaller number first")?;
-                }
+            None => {
+                let valid =
+                    least <= 0.0 && 0.0 <= largest && least < largest && least.is_finite() && largest.is_finite();
+                let allowed = "finite numbers around 0, the smaller first (mm)";
+                SceneError::require(valid, "lattice.displacement", value, allowed)?;
+                let allowed = "0 where controls are displacements (mm)";
+                SceneError::require(self.start == 0.0, "lattice.start", self.start, allowed)?;
+                let allowed = "none where controls are displacements";
+                SceneError::require(self.thickness.is_none(), "lattice.thickness", "a thickness", allowed)?;
             }
         }
-        let [least, largest] = self.displacement;
-        let value = format!("[{least}, {largest}]");
-        let valid = least <= 0.0 && 0.0 <= largest && least < largest && least.is_finite() && largest.is_finite();
-        SceneError::require(valid, "lattice.displacement", value, "finite numbers around 0, the smaller first (mm)")?;
+        if let Some([least, largest]) = self.volume {
+            let value = format!("[{least}, {largest}]");
+            let allowed = "the smallest volume, then the largest (mm³)";
+            SceneError::require(least <= largest, "admissible.volume", value, allowed)?;
+        }
         SceneError::require(self.control_count() > 0, "lattice.directions", "none", "at least one control that moves")
     }
 
-    fn bases(&self) -> Result<[Basis; 3], SceneError> {
+    /// The bases along the coordinates.
+    pub(crate) fn bases(&self) -> Result<[Basis; 3], SceneError> {
         let basis = |axis: usize| Basis::clamped(self.degrees[axis], self.control_points[axis], "lattice.degrees");
         Ok([basis(0)?, basis(1)?, basis(2)?])
     }
 
-    /// The map of a body with this mesh; `held`: orthonormal directions in which supports hold a node.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] for names that the mesh does not have, and for a lattice that holds no node that may
-    /// move.
-    pub(crate) fn map<'b>(
-        &self,
-        mesh: &Mesh,
-        points: &[MiddlePoint],
-        held: impl Fn(u32) -> &'b [[f64; 3]],
-    ) -> Result<BodyMap, SceneError> {
-        let (bases, controls) = (self.bases()?, self.controls());
-        let mut by_point: HashMap<(usize, usize), Vec<(usize, f64)>> = HashMap::new();
-        for (number, control) in controls.iter().enumerate() {
-            for &(point, way, factor) in control {
-                by_point.entry((point, way)).or_default().push((number, factor));
-            }
-        }
-        let region = self.region_nodes(mesh)?;
-        let mut fixed = BTreeSet::new();
-        for name in &self.fixed {
-            fixed.extend(nodes_of("lattice.fixed", name, mesh)?);
-        }
-        let normals = match &self.directions {
-            Directions::Axes(_) => None,
-            Directions::Normal(face) => {
-                let faces = find_face("lattice.normal", face, mesh)?;
-                Some(crate::body::nodal_normals(mesh, faces))
-            }
-        };
-        let (mut rows, mut moved) = (Vec::with_capacity(3 * mesh.node_count()), 0);
-        // A middle is fixed, or in the region, where both ends of its edge are.
-        let row = |x: [f64; 3], ends: &[u32], held: &[[f64; 3]]| {
-            let is_in = |set: &BTreeSet<u32>| ends.iter().all(|end| set.contains(end));
-            let free = !is_in(&fixed) && region.as_ref().is_none_or(is_in);
-            let place = self.place(x).filter(|_| free);
-            let directions = match (&normals, place) {
-                (_, None) => None,
-                (None, Some((_, frame))) => Some(frame.to_vec()),
-                (Some(normals), Some(_)) => mean_normal(ends.iter().map(|end| normals.get(end))).map(|n| vec![n]),
-            };
-            match (place, directions) {
-                (Some((xi, _)), Some(directions)) => self.rows(xi, &directions, &bases, &by_point, held),
-                _ => [vec![], vec![], vec![]],
-            }
-        };
-        for node in 0..mesh.node_count() as u32 {
-            let row = row(mesh.nodes()[node as usize], &[node], held(node));
-            moved += usize::from(row.iter().any(|row| !row.is_empty()));
-            rows.extend(row);
-        }
-        for MiddlePoint { ends, place } in points {
-            rows.extend(row(*place, ends, &common(ends.map(&held))));
-        }
-        if moved == 0 {
-            let [least, most] = bounding_box(mesh.nodes());
-            let allowed = format!("a box around nodes that may move; the body lies between {least:?} and {most:?} mm");
-            return Err(SceneError::out_of_range("lattice", "a box without such nodes", allowed));
-        }
-        let base = mesh.nodes().iter().copied().chain(points.iter().map(|point| point.place)).collect();
-        Ok(BodyMap { base, middles: points.len(), controls: controls.len(), rows })
-    }
-
-    /// The nodes of the region; none where all nodes in the box move.
-    fn region_nodes(&self, mesh: &Mesh) -> Result<Option<BTreeSet<u32>>, SceneError> {
-        if self.region.is_empty() {
-            return Ok(None);
-        }
-        let mut region = BTreeSet::new();
-        for name in &self.region {
-            region.extend(nodes_of("lattice.region", name, mesh)?);
-        }
-        Ok(Some(region))
-    }
-
-    /// The rows of N of a node at lattice coordinates ξ, whose control points move along `directions`.
-    fn rows(
-        &self,
-        xi: [f64; 3],
-        directions: &[[f64; 3]],
-        bases: &[Basis; 3],
-        by_point: &HashMap<(usize, usize), Vec<(usize, f64)>>,
-        held: &[[f64; 3]],
-    ) -> [Vec<(usize, f64)>; 3] {
-        let values: [Vec<f64>; 3] = std::array::from_fn(|axis| bases[axis].values(xi[axis]));
-        let counts = self.control_points;
-        let mut sums: HashMap<usize, [f64; 3]> = HashMap::new();
-        for (i, a) in values[0].iter().enumerate().filter(|(_, a)| **a != 0.0) {
-            for (j, b) in values[1].iter().enumerate().filter(|(_, b)| **b != 0.0) {
-                for (l, c) in values[2].iter().enumerate().filter(|(_, c)| **c != 0.0) {
-                    let point = (i * counts[1] + j) * counts[2] + l;
-                    for (&way, &direction) in self.ways().iter().zip(&self.along(directions)) {
-                        for &(control, factor) in by_point.get(&(point, way)).into_iter().flatten() {
-                            let sum = sums.entry(control).or_default();
-                            (0..3).for_each(|axis| sum[axis] += a * b * c * factor * direction[axis]);
-                        }
-                    }
-                }
-            }
-        }
-        let mut rows = [vec![], vec![], vec![]];
-        let mut sums: Vec<(usize, [f64; 3])> = sums.into_iter().collect();
-        sums.sort_unstable_by_key(|(control, _)| *control);
-        for (control, mut sum) in sums {
-            for direction in held.iter().filter(|_| self.hold_supports) {
-                let share = dot(*direction, sum);
-                (0..3).for_each(|axis| sum[axis] -= share * direction[axis]);
-            }
-            let size = length(sum);
-            for axis in (0..3).filter(|&axis| sum[axis].abs() > 1e-14 * size) {
-                rows[axis].push((control, sum[axis]));
-            }
-        }
-        rows
-    }
-
-    /// Of the directions at a node, those along which control points move.
-    fn along(&self, directions: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        match self.directions {
-            Directions::Normal(_) => directions.to_vec(),
-            Directions::Axes(_) => self.ways().into_iter().map(|way| directions[way]).collect(),
-        }
-    }
-
-    /// Lattice coordinates of a point on [0, 1], and the unit vectors of the coordinates there; none outside the box.
-    fn place(&self, x: [f64; 3]) -> Option<([f64; 3], [[f64; 3]; 3])> {
-        let (xi, frame): ([f64; 3], [[f64; 3]; 3]) = match self.coordinates {
-            Coordinates::Cartesian { corner, edges } => {
-                let from = subtract(x, corner);
-                (edges.map(|edge| dot(from, edge) / dot(edge, edge)), edges.map(unit))
-            }
-            Coordinates::Cylindrical { point, axis, zero, ranges } => {
-                let axis = unit(axis);
-                let second = unit(cross(axis, zero));
-                let first = cross(second, axis);
-                let from = subtract(x, point);
-                let (height, a, b) = (dot(from, axis), dot(from, first), dot(from, second));
-                let radius = a.hypot(b);
-                // The angle counts from the least one of the range.
-                let [least, largest] = ranges[1];
-                let turn = 2.0 * std::f64::consts::PI;
-                let slack = INSIDE * (largest - least);
-                let angle = least - slack + (b.atan2(a) - least + slack).rem_euclid(turn);
-                let outward = combine(first, a / radius, second, b / radius);
-                let around = combine(first, -b / radius, second, a / radius);
-                let place = [radius, angle, height];
-                let xi = |k: usize| (place[k] - ranges[k][0]) / (ranges[k][1] - ranges[k][0]);
-                (std::array::from_fn(xi), [outward, around, axis])
-            }
-        };
-        let inside = xi.iter().all(|xi| (-INSIDE..=1.0 + INSIDE).contains(xi));
-        inside.then(|| (xi.map(|xi| xi.clamp(0.0, 1.0)), frame))
-    }
-
-    /// Where a control point lies at the reference shape, mm.
-    fn point_place(&self, point: usize) -> [f64; 3] {
+    /// Where a control point lies at the start, mm.
+    pub(crate) fn point_place(&self, point: usize, block: Option<&Block>) -> [f64; 3] {
         let counts = self.control_points;
         let index = [point / (counts[1] * counts[2]), point / counts[2] % counts[1], point % counts[2]];
         let xi = |axis: usize| match counts[axis] {
             1 => 0.5,
             count => index[axis] as f64 / (count - 1) as f64,
         };
-        match self.coordinates {
-            Coordinates::Cartesian { corner, edges } => {
-                std::array::from_fn(|k| corner[k] + (0..3).map(|axis| xi(axis) * edges[axis][k]).sum::<f64>())
-            }
-            Coordinates::Cylindrical { point, axis, zero, ranges } => {
-                let axis = unit(axis);
-                let second = unit(cross(axis, zero));
-                let first = cross(second, axis);
-                let [radius, angle, height] =
-                    std::array::from_fn(|k| ranges[k][0] + xi(k) * (ranges[k][1] - ranges[k][0]));
-                let across = combine(first, radius * angle.cos(), second, radius * angle.sin());
-                std::array::from_fn(|k| point[k] + across[k] + height * axis[k])
-            }
-        }
+        self.coordinates.point(std::array::from_fn(xi), block)
     }
 
-    /// Names of the controls: place of the control point and direction.
-    pub fn control_names(&self) -> Vec<String> {
-        let way = |way: usize| match (&self.directions, self.coordinates) {
-            (Directions::Normal(face), _) => format!("along the normal of {face}"),
-            (_, Coordinates::Cartesian { edges, .. }) => {
-                let edge = unit(edges[way]);
-                match (0..3).find(|&axis| edge[axis].abs() > 1.0 - 1e-12) {
-                    Some(axis) => format!("along x{}", axis + 1),
-                    None => format!("along edge {}", way + 1),
-                }
-            }
-            (_, Coordinates::Cylindrical { .. }) => ["outwards", "around", "along the axis"][way].to_owned(),
-        };
+    /// Places (x₁, x₂) of heights of a face, spread evenly over the base of their block, mm.
+    pub(crate) fn height_places(&self, block: &Block) -> impl Iterator<Item = [f64; 2]> + use<> {
+        let ([n1, n2, _], size, grid) = (self.control_points, block.size, block.grid());
+        let along = move |axis: usize, index: usize, count: usize| size[axis] * index as f64 / (count - 1) as f64;
+        (0..n1).flat_map(move |i| (0..n2).map(move |j| grid.moved([along(0, i, n1), along(1, j, n2)])))
+    }
+
+    /// Names of the controls: place of the control point and direction; `block`: the block at the start, for lattices in
+    /// its coordinates.
+    pub fn control_names(&self, block: Option<&Block>) -> Vec<String> {
         let name = |control: &Control| {
             let (point, direction, _) = control[0];
-            let [x1, x2, x3] = self.point_place(point);
-            format!("control point at ({x1:.4}, {x2:.4}, {x3:.4}) mm {}", way(direction))
+            let [x1, x2, x3] = self.point_place(point, block);
+            match (self.face(), &self.directions) {
+                (Some(_), _) => format!("height of control point at ({x1:.4}, {x2:.4}) mm"),
+                (None, Directions::Normal(face)) => {
+                    format!("control point at ({x1:.4}, {x2:.4}, {x3:.4}) mm along the normal of {face}")
+                }
+                (None, Directions::Axes(_)) => {
+                    let way = self.coordinates.way(direction);
+                    format!("control point at ({x1:.4}, {x2:.4}, {x3:.4}) mm {way}")
+                }
+            }
         };
         self.controls().iter().map(name).collect()
     }
-}
-
-/// The held directions of the first that the second has too.
-fn common([first, second]: [&[[f64; 3]]; 2]) -> Vec<[f64; 3]> {
-    let is_held = |direction: &&[f64; 3]| {
-        let square: f64 = second.iter().map(|other| dot(**direction, *other).powi(2)).sum();
-        (square - 1.0).abs() < 1e-8
-    };
-    first.iter().filter(is_held).copied().collect()
-}
-
-/// The mean of unit normals at length one; none where one is missing.
-fn mean_normal<'n>(normals: impl Iterator<Item = Option<&'n [f64; 3]>>) -> Option<[f64; 3]> {
-    let all: Vec<[f64; 3]> = normals.map(Option::<&[f64; 3]>::copied).collect::<Option<_>>()?;
-    if let [only] = all[..] {
-        return Some(only);
-    }
-    let sum = all.iter().fold([0.0; 3], |sum, normal| combine(sum, 1.0, *normal, 1.0));
-    Some(unit(sum))
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
-
-fn unit(a: [f64; 3]) -> [f64; 3] {
-    let length = length(a);
-    a.map(|x| x / length)
-}
-
-fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn combine(a: [f64; 3], s: f64, b: [f64; 3], t: f64) -> [f64; 3] {
-    std::array::from_fn(|axis| s * a[axis] + t * b[axis])
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }

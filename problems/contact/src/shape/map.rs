@@ -7,8 +7,6 @@
 //! faces follow the nodes of all bodies.
 
 use crate::linear::csr::Csr;
-use crate::patches::MiddlePoint;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -28,25 +26,6 @@ pub(crate) struct BodyMap {
 }
 
 impl BodyMap {
-    /// With middles of edges that move as the mean of their ends.
-    pub(crate) fn with_middles(mut self, points: &[MiddlePoint]) -> Self {
-        self.middles += points.len();
-        for point in points {
-            let rows: [Vec<(usize, f64)>; 3] = std::array::from_fn(|axis| {
-                let mut sums = BTreeMap::new();
-                let ends = point.ends.iter().flat_map(|&end| self.row(end, axis));
-                ends.for_each(|&(control, value)| *sums.entry(control).or_insert(0.0) += 0.5 * value);
-                sums.into_iter().collect()
-            });
-            let is_still = rows.iter().all(Vec::is_empty);
-            let [a, b] = point.ends.map(|end| self.base[end as usize]);
-            let mean = std::array::from_fn(|axis| 0.5 * (a[axis] + b[axis]));
-            self.base.push(if is_still { point.place } else { mean });
-            self.rows.extend(rows);
-        }
-        self
-    }
-
     /// A row of N: how a component of the position of a node depends on the controls.
     pub(crate) fn row(&self, node: u32, axis: usize) -> &[(usize, f64)] {
         self.rows.get(3 * node as usize + axis).map_or(&[], Vec::as_slice)

@@ -1,25 +1,20 @@
-//! The controls of a shape: height surfaces of blocks and lattices in space as linear maps to node positions; the
-//! admissible set.
+//! The controls of a shape: lattices in space and over blocks as linear maps to node positions; the admissible set.
 
 mod admissible;
 mod bending;
 mod bspline;
-mod heights;
+mod control_rows;
+mod coordinates;
 mod lattice;
+mod lattice_map;
 mod map;
-mod pieces;
 mod refinement;
-mod scene;
 mod surface;
 
 pub use admissible::AdmissibleSet;
-pub use bending::bending;
-pub(crate) use bending::bending_rows;
-pub(crate) use heights::height_map;
-pub use heights::{HeightShape, ShapeBounds, ShapedFace};
-pub use lattice::{Coordinates, Directions, LatticeShape, NodeBound};
+pub use coordinates::Coordinates;
+pub use lattice::{Directions, LatticeShape, NodeBound, ShapedFace};
 pub(crate) use map::{BodyMap, first_of};
 pub use map::{Positions, ShapeMap, Velocities};
-pub use pieces::Pieces;
-pub use scene::ShapeScene;
-pub use surface::{HeightMap, SplineKind, SplineSurface};
+pub use refinement::CoarseNet;
+pub use surface::SplineSurface;

@@ -1,34 +1,80 @@
-//! Coarser splines whose surfaces are surfaces of a finer one too: fewer knots, or a lower degree where one polynomial
-//! is left.
+//! Coarse nets of controls: splines with fewer knots, or of a lower degree where one polynomial is left.
 //!
 //! ```text
 //! N^coarse_j = Σ_i P_ij N_i,     F_β = F_{Pβ}     exactly: knot insertion and degree elevation
 //! ```
-//! P is found by interpolation at the Greville abscissae of the fine basis, where that is always possible.
+//! P is found by interpolation at the Greville abscissae of the fine basis, where that is always possible. Control
+//! points that do not move, and mirrored ones, take the nearest values that the controls can give.
 
 use crate::error::SceneError;
-use crate::shape::SplineSurface;
+use crate::scene::Scene;
+use crate::shape::LatticeShape;
 use crate::shape::bspline::Basis;
-use nonsmooth::Matrix;
+use nonsmooth::{Matrix, Vector};
 
-impl SplineSurface {
-    /// The coarser surface with about so many control points per axis, at most those of this one, whose surfaces this
-    /// one has too.
+/// Part of a direction that must not lie in those before it for the direction to count.
+const INDEPENDENT: f64 = 1e-8;
+
+/// Coarse nets of controls of all bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoarseNet {
+    /// From the controls of the nets to changes of those of the scene, with independent columns.
+    pub directions: Matrix,
+    /// Numbers of columns that belong to the bodies with controls, in their order.
+    pub counts: Vec<usize>,
+}
+
+impl Scene {
+    /// Nets of about so many control points along every coordinate of every lattice, at most those that it has.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for fewer than two control points.
-    pub fn coarser(&self, count: usize) -> Result<Self, SceneError> {
-        let [first, second] = self.bases();
-        Ok(Self::of_bases([coarser(first, count)?, coarser(second, count)?]))
+    /// [`SceneError::OutOfRange`] for fewer than two control points, and where a system of equations is singular.
+    pub fn coarse_net(&self, count: usize) -> Result<CoarseNet, SceneError> {
+        let parts =
+            self.shapes().map(|shape| shape.coarse_directions(count)).collect::<Result<Vec<_>, SceneError>>()?;
+        let counts: Vec<usize> = parts.iter().map(Matrix::ncols).collect();
+        let mut directions = Matrix::zeros(self.control_count(), counts.iter().sum());
+        let (mut row, mut column) = (0, 0);
+        for part in &parts {
+            directions.view_mut((row, column), part.shape()).copy_from(part);
+            (row, column) = (row + part.nrows(), column + part.ncols());
+        }
+        Ok(CoarseNet { directions, counts })
     }
+}
 
-    /// P from the controls of a coarser surface to those of this one for the same heights.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] where a system of equations is singular.
-    pub fn refinement(&self, coarse: &Self) -> Result<Matrix, SceneError> {
-        let ([first, second], [coarse_first, coarse_second]) = (self.bases(), coarse.bases());
-        Ok(refinement(first, coarse_first)?.kronecker(&refinement(second, coarse_second)?))
+impl LatticeShape {
+    /// Changes of the controls for those of a coarse net, with independent columns.
+    fn coarse_directions(&self, count: usize) -> Result<Matrix, SceneError> {
+        let mut points = Matrix::identity(1, 1);
+        for fine in self.bases()? {
+            points = points.kronecker(&refinement(&fine, &coarser(&fine, count)?)?);
+        }
+        let controls = self.controls();
+        let mut columns: Vec<Vector> = Vec::new();
+        let mut orthonormal: Vec<Vector> = Vec::new();
+        for point in 0..points.ncols() {
+            for way in self.ways() {
+                // The nearest values of the control points that each control can give.
+                let value = |control: &crate::shape::lattice::Control| {
+                    let own = || control.iter().filter(|(_, own, _)| *own == way);
+                    let square: f64 = own().map(|(.., factor)| factor * factor).sum();
+                    let sum: f64 = own().map(|&(fine, _, factor)| factor * points[(fine, point)]).sum();
+                    if square > 0.0 { sum / square } else { 0.0 }
+                };
+                let column = Vector::from_iterator(controls.len(), controls.iter().map(value));
+                let mut rest = column.clone();
+                // Twice, against rounding.
+                for known in orthonormal.iter().chain(&orthonormal) {
+                    rest -= known * known.dot(&rest);
+                }
+                if rest.norm() > INDEPENDENT * column.norm() {
+                    orthonormal.push(rest.normalize());
+                    columns.push(column);
+                }
+            }
+        }
+        Ok(Matrix::from_columns(&columns))
     }
 }
 
@@ -53,33 +99,51 @@ fn refinement(fine: &Basis, coarse: &Basis) -> Result<Matrix, SceneError> {
         Matrix::from_row_slice(places.len(), basis.count(), &rows)
     };
     let solved = values(fine).lu().solve(&values(coarse));
-    solved.ok_or_else(|| SceneError::out_of_range("surface.control_points", fine.count(), "a basis that interpolates"))
+    solved.ok_or_else(|| SceneError::out_of_range("lattice.control_points", fine.count(), "a basis that interpolates"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::SplineKind;
+    use crate::shape::{Coordinates, ShapedFace};
 
     /// The heights of a coarse surface are those of the fine one, at places that are no knots.
     #[test]
     fn refinement_is_exact() {
-        let kinds =
-            [(SplineKind::BSpline(3), [6, 9]), (SplineKind::BSpline(2), [7, 5]), (SplineKind::BSpline(1), [6, 5])];
-        for (kind, counts) in kinds.into_iter().chain([(SplineKind::Bezier, [7, 5])]) {
-            let fine = SplineSurface::new(kind, counts).expect("valid");
+        for (degrees, counts) in [([3, 3], [6, 9]), ([2, 2], [7, 5]), ([1, 1], [6, 5]), ([6, 4], [7, 5])] {
+            let fine = LatticeShape::heights(ShapedFace::Top, counts, degrees, 1.0);
             for count in 2..9 {
-                let coarse = fine.coarser(count).expect("valid");
-                assert!((0..2).all(|axis| coarse.counts()[axis] == count.min(counts[axis])), "{:?}", coarse.counts());
-                let controls: Vec<f64> = (0..coarse.control_count()).map(|k| (1.0 + 7.0 * k as f64).sin()).collect();
-                let refined =
-                    fine.refinement(&coarse).expect("regular") * nonsmooth::Vector::from_vec(controls.clone());
-                let places: [Vec<f64>; 2] = std::array::from_fn(|_| (0..=40).map(|k| f64::from(k) / 40.0).collect());
-                let there = coarse.height_map_at(places.clone()).heights(&controls);
-                let here = fine.height_map_at(places).heights(refined.as_slice());
-                let off = there.iter().zip(&here).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                assert!(off < 1e-14, "{kind:?} {counts:?} from {count}: {off:e}");
+                let bases: [Basis; 2] =
+                    std::array::from_fn(|axis| coarser(&fine.bases().expect("valid")[axis], count).expect("valid"));
+                assert!((0..2).all(|axis| bases[axis].count() == count.min(counts[axis])));
+                let coarse = crate::shape::SplineSurface::new(bases);
+                let directions = fine.coarse_directions(count).expect("regular");
+                let controls: Vec<f64> = (0..directions.ncols()).map(|k| (1.0 + 7.0 * k as f64).sin()).collect();
+                let refined = directions * Vector::from_vec(controls.clone());
+                let surface = fine.surface().expect("valid");
+                for place in (0..=1600).map(|k| [f64::from(k / 40) / 40.0, f64::from(k % 40) / 40.0]) {
+                    let off = coarse.height(&controls, place) - surface.height(refined.as_slice(), place);
+                    assert!(off.abs() < 1e-14, "{degrees:?} {counts:?} from {count}: {off:e}");
+                }
             }
         }
+    }
+
+    /// Mirrored controls and still layers leave as many directions as coarse nets have controls of their own.
+    #[test]
+    fn directions_are_independent() {
+        let coordinates =
+            Coordinates::Cartesian { corner: [0.0; 3], edges: [[3.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 7.0]] };
+        let mut lattice = LatticeShape::new(coordinates, [6, 5, 4], [-1.0, 1.0]);
+        assert_eq!(lattice.coarse_directions(3).expect("regular").shape(), (360, 81));
+        lattice.frozen[2] = [1, 0];
+        let still = lattice.coarse_directions(3).expect("regular");
+        assert_eq!(still.nrows(), 270);
+        assert!((54..=81).contains(&still.ncols()), "{}", still.ncols());
+        lattice.symmetric[0] = true;
+        let symmetric = lattice.coarse_directions(3).expect("regular");
+        assert_eq!(symmetric.nrows(), lattice.control_count());
+        let lower = |matrix: &Matrix| matrix.clone().svd(false, false).singular_values.min();
+        assert!(symmetric.ncols() < still.ncols() && lower(&symmetric) > 1e-8 && lower(&still) > 1e-8);
     }
 }

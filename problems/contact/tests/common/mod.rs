@@ -10,7 +10,7 @@ use testset::kit::wavy;
 
 /// All heights of a scene at the start, mm.
 pub fn start_height(scene: &Scene) -> f64 {
-    scene.heights().expect("a height surface").start_height
+    scene.heights().expect("heights of a face").start
 }
 
 /// Heights of a gently wavy surface just below the start.

@@ -140,7 +140,7 @@ fn the_stacked_jacobian_has_the_rows_that_adjoints_give() {
 #[test]
 fn the_bending_is_added_with_its_derivatives() {
     let weight = 1e10;
-    let fair = |(name, scene): (&'static str, Scene)| (name, scene.with_heights(|heights| heights.fairness = weight));
+    let fair = |(name, scene): (&'static str, Scene)| (name, scene.with_shapes(|heights| heights.fairness = weight));
     for over in [Over::Worst, Over::Sum] {
         let plain = objective(&scenes(), SolverKind::Direct, &norm(), over, &[]);
         let bent = objective(&scenes().map(fair), SolverKind::Direct, &norm(), over, &[]);
@@ -148,8 +148,7 @@ fn the_bending_is_added_with_its_derivatives() {
         let value =
             |objective: &ContactObjective| objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value;
         let scene = &plain.solver().problem().scene;
-        let surface = scene.heights().unwrap().surface().unwrap();
-        let energy = at.dot(&(contact::shape::bending(&surface, scene.bodies[0].block().unwrap().size) * &at));
+        let energy = at.dot(&(scene.bending().unwrap() * &at));
         let expected = value(&plain) + weight * energy;
         assert!((value(&bent) / expected - 1.0).abs() < 1e-12 && weight * energy > 1e-9 * expected);
         let direction = Direction::Given(seeded_direction(36, 4));

@@ -7,7 +7,7 @@ use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::scene::{
     BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, Master, MeshGeometry, Scene, Support,
 };
-use contact::shape::{Coordinates, Directions, LatticeShape, ShapeScene};
+use contact::shape::{Coordinates, LatticeShape};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ pub fn scene(mesh: Mesh, obstacle: CounterSurface, friction: f64) -> Scene {
     Scene {
         name: "mesh".into(),
         bodies: vec![BodyScene {
-            shape: Some(ShapeScene::Lattice(lattice(corner, size, [2; 3]))),
+            shape: Some(lattice(corner, size, [2; 3])),
             ..BodyScene::new("body", geometry, material(ELASTIC))
         }],
         contacts: vec![ContactScene::new(BodyFace::new(0, "top"), Master::Obstacle(obstacle), friction)],
@@ -38,18 +38,11 @@ pub fn material([young_modulus, poisson_ratio]: [f64; 2]) -> Material {
 /// A lattice of Bernstein polynomials over a box along the axes, all of whose points move every way.
 pub fn lattice(corner: Point, size: Point, control_points: [usize; 3]) -> LatticeShape {
     let edge = |axis: usize| std::array::from_fn(|other| if other == axis { size[axis] } else { 0.0 });
+    let coordinates = Coordinates::Cartesian { corner, edges: std::array::from_fn(edge) };
     LatticeShape {
-        coordinates: Coordinates::Cartesian { corner, edges: std::array::from_fn(edge) },
-        control_points,
         degrees: control_points.map(|count| count - 1),
-        directions: Directions::Axes([true; 3]),
-        region: vec![],
-        fixed: vec![],
         hold_supports: false,
-        symmetric: [false; 3],
-        frozen: [[0; 2]; 3],
-        displacement: [-10.0, 10.0],
-        node_bounds: vec![],
+        ..LatticeShape::new(coordinates, control_points, [-10.0, 10.0])
     }
 }
 
@@ -78,10 +71,7 @@ pub fn mesh_of(scene: &Scene) -> &Mesh {
 
 /// The lattice of a scene.
 pub fn lattice_of(scene: &mut Scene) -> &mut LatticeShape {
-    match &mut scene.bodies[0].shape {
-        Some(ShapeScene::Lattice(lattice)) => lattice,
-        _ => unreachable!("scenes here have lattices"),
-    }
+    scene.bodies[0].shape.as_mut().expect("scenes here have lattices")
 }
 
 /// The state of a scene at some controls, or at the start.

@@ -10,7 +10,6 @@ use contact::scene::{
     BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, LoadKind, Master, MeshGeometry, Scene, Side,
     Support,
 };
-use contact::shape::ShapeScene;
 use contact::solvers::{Processes, SolverKind, SolverPlan};
 use rayon::prelude::*;
 use testset::kit::Random;
@@ -50,10 +49,7 @@ fn body(random: &mut Random, name: &str, mesh: Mesh) -> BodyScene {
     let geometry = Geometry::Mesh(MeshGeometry { mesh: mesh.into(), pieces: Some(1 + random.below(4)) });
     let elastic = [10_f64.powf(between(random, 3.0, 5.3)), between(random, 0.0, 0.45)];
     let points = std::array::from_fn(|_| 2 + random.below(2));
-    BodyScene {
-        shape: Some(ShapeScene::Lattice(lattice(corner, size, points))),
-        ..BodyScene::new(name, geometry, material(elastic))
-    }
+    BodyScene { shape: Some(lattice(corner, size, points)), ..BodyScene::new(name, geometry, material(elastic)) }
 }
 
 /// An obstacle that touches a place, but for a gap, along a normal from the body into it.

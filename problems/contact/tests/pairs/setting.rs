@@ -3,7 +3,7 @@
 use contact::body::elasticity::Material;
 use contact::body::mesh::{CellKind, Mesh};
 use contact::scene::{BodyFace, BodyScene, ContactScene, Geometry, Load, Master, MeshGeometry, Scene, Support};
-use contact::shape::{Coordinates, Directions, LatticeShape, ShapeScene};
+use contact::shape::{Coordinates, Directions, LatticeShape};
 use std::sync::Arc;
 
 pub use crate::grid::{Point, mesh};
@@ -21,21 +21,11 @@ pub fn boxed(boxes: [usize; 3], distortion: f64, from: Point, to: Point) -> Mesh
 }
 
 /// A lattice of 2 × 2 × 2 control points around a box.
-pub fn lattice(corner: Point, size: Point, axes: [bool; 3]) -> Option<ShapeScene> {
+pub fn lattice(corner: Point, size: Point, axes: [bool; 3]) -> Option<LatticeShape> {
     let edges = std::array::from_fn(|axis| std::array::from_fn(|k| if k == axis { size[axis] } else { 0.0 }));
-    Some(ShapeScene::Lattice(LatticeShape {
-        coordinates: Coordinates::Cartesian { corner, edges },
-        control_points: [2; 3],
-        degrees: [1; 3],
-        directions: Directions::Axes(axes),
-        region: Vec::new(),
-        fixed: Vec::new(),
-        hold_supports: true,
-        symmetric: [false; 3],
-        frozen: [[0; 2]; 3],
-        displacement: [-0.2 * size[0], 0.2 * size[0]],
-        node_bounds: Vec::new(),
-    }))
+    let range = [-0.2 * size[0], 0.2 * size[0]];
+    let lattice = LatticeShape::new(Coordinates::Cartesian { corner, edges }, [2; 3], range);
+    Some(LatticeShape { directions: Directions::Axes(axes), ..lattice })
 }
 
 /// Symmetry planes x₁ = 0 and x₂ = 0.

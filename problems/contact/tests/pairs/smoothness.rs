@@ -6,7 +6,7 @@ use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{Measure, NodeWeight, PressureMeasure};
 use contact::scene::{Scene, Support};
-use contact::shape::{Coordinates, Directions, LatticeShape, ShapeScene};
+use contact::shape::{Coordinates, Directions, LatticeShape};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
 /// A small body that slides along x₁ over a large one: its only control moves it as a whole.
@@ -18,22 +18,12 @@ fn sliding(distortion: f64, slave: usize) -> Scene {
         [x1, x2, height + r * (11.0 - height)]
     };
     let mut upper = body("upper", crate::grid::mesh(CellKind::Hex8, [5, 4, 2], distortion, bump), [2000.0, 0.3]);
-    upper.shape = Some(ShapeScene::Lattice(LatticeShape {
-        coordinates: Coordinates::Cartesian {
-            corner: [0.0; 3],
-            edges: [[20.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 20.0]],
-        },
-        control_points: [1; 3],
-        degrees: [0; 3],
+    let edges = [[20.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 20.0]];
+    upper.shape = Some(LatticeShape {
         directions: Directions::Axes([true, false, false]),
-        region: Vec::new(),
-        fixed: Vec::new(),
         hold_supports: false,
-        symmetric: [false; 3],
-        frozen: [[0; 2]; 3],
-        displacement: [-3.0, 3.0],
-        node_bounds: Vec::new(),
-    }));
+        ..LatticeShape::new(Coordinates::Cartesian { corner: [0.0; 3], edges }, [1; 3], [-3.0, 3.0])
+    });
     let mut bodies = stacked(lower, upper, 1.0);
     bodies[0].supports = vec![Support::new("bottom", [true; 3])];
     bodies[1].loads.clear();

@@ -10,7 +10,7 @@ use contact::equilibrium::ContactProblem;
 use contact::scene::{
     BodyFace, ContactScene, CounterSurface, Geometry, Load, Master, NormalKind, Scene, Support, hertz,
 };
-use contact::shape::{ShapeScene, ShapedFace};
+use contact::shape::{LatticeShape, ShapedFace};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
 /// Both solvers find states with the same displacements, and forces on every body in equilibrium; the displacements.
@@ -77,11 +77,9 @@ fn both_shaped() -> Scene {
         block.bricks = [5; 3];
         block.subdomains = [1; 3];
     }
-    let Some(ShapeScene::Heights(mut heights)) = scene.bodies[0].shape.clone() else { unreachable!("a surface") };
-    heights.face = ShapedFace::Bottom;
-    heights.control_points = [4, 4];
-    (heights.start_height, heights.bounds.minimum_height) = (10.2, 4.0);
-    scene.bodies[1].shape = Some(ShapeScene::Heights(heights));
+    let heights = LatticeShape::heights(ShapedFace::Bottom, [4, 4], [3, 3], 10.2);
+    let (slope, volume) = (Some(5.0), Some([800.0, 1200.0]));
+    scene.bodies[1].shape = Some(LatticeShape { thickness: Some(4.0), slope, volume, ..heights });
     scene
 }
 

@@ -6,7 +6,7 @@ use contact::body::mesh::BlockFace;
 use contact::direct::{DirectSolver, by_cone_programs};
 use contact::equilibrium::{ContactProblem, ContactRows};
 use contact::scene::{CounterSurface, Load, Scene, hertz, signorini};
-use contact::shape::ShapeBounds;
+use contact::shape::{LatticeShape, ShapedFace};
 use std::sync::Arc;
 use testset::kit::wavy;
 
@@ -74,10 +74,8 @@ fn continuation_finds_the_states_of_a_thin_plate() {
     change_counter_surface(&mut scene, |_| CounterSurface::Plane { height });
     scene.bodies[0].material = Material::new(2.625089606217722e5, 4.9751755389752494e-1).unwrap();
     scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, traction)];
-    let scene = scene.with_heights(|heights| {
-        heights.start_height = height;
-        heights.control_points = [4, 4];
-        heights.bounds = ShapeBounds { minimum_height: 0.19, slope: 1e9, volume: [0.0, 1e27] };
+    let scene = scene.with_shapes(|heights| {
+        *heights = LatticeShape::heights(ShapedFace::Top, [4, 4], [3, 3], height);
     });
     let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).unwrap())).unwrap();
     for seed in 0..20 {

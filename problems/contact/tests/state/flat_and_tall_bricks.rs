@@ -14,10 +14,9 @@ const TALL: usize = 520;
 fn plates_one_to_a_hundred_and_rods_are_solved() {
     // The plate was refused before K⁺ was balanced.
     for (height, pressure, allowed) in [(1.0, 30.0, FLAT), (1e4, 30.0, TALL)] {
-        let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_heights(|heights| {
-            heights.start_height = height;
-            heights.bounds.minimum_height = 0.5 * height;
-            heights.bounds.volume = [0.8e4 * height, 1.2e4 * height];
+        let mut scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_shapes(|heights| {
+            (heights.start, heights.thickness) = (height, Some(0.5 * height));
+            heights.volume = Some([0.8e4 * height, 1.2e4 * height]);
         });
         change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 1.00001 * height });
         scene.bodies[0].loads = vec![Load::traction(BlockFace::Bottom, [0.0, 0.0, pressure])];

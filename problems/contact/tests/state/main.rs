@@ -21,5 +21,6 @@ mod rank;
 mod resultants;
 mod scene_structure;
 mod several_processes;
+mod shapes;
 mod shared_factors;
 mod successive_approximations;

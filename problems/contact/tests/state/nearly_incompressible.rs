@@ -76,10 +76,8 @@ fn ordinary_materials_have_no_compressible_neighbour() {
 /// A soft layer, bonded to its base, under a steel sphere: `problems/scenes/thin_layer.toml`.
 fn layer(ratio: f64, formulation: Formulation) -> Scene {
     let scene = hertz().unwrap().with_bricks([12, 12, 4], [2, 2, 1]).with_friction(0.1);
-    let mut scene = scene.with_heights(|heights| {
-        heights.start_height = 1.0;
-        heights.bounds.minimum_height = 0.5;
-        heights.bounds.volume = [80.0, 120.0];
+    let mut scene = scene.with_shapes(|heights| {
+        (heights.start, heights.thickness, heights.volume) = (1.0, Some(0.5), Some([80.0, 120.0]));
     });
     scene.bodies[0].material = Material::new(100.0, ratio).unwrap().with_formulation(formulation);
     for support in scene.bodies[0].supports.iter_mut().filter(|support| support.face == BlockFace::Bottom.name()) {

@@ -8,7 +8,6 @@ use contact::equilibrium::{Configuration, ContactProblem, ContactStatus};
 use contact::error::{ContactError, SceneError};
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
-use contact::shape::ShapeBounds;
 use contact::tfeti::{TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use std::sync::Arc;
@@ -183,9 +182,8 @@ fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
 fn forces_in_balance_are_never_refused() {
     for index in 0..24 {
         let scene = small(hertz().unwrap(), 3, 1).with_blocks(|blocks| blocks.size = [1.0; 2]);
-        let mut scene = scene.with_heights(|heights| {
-            heights.start_height = 1.0;
-            heights.bounds = ShapeBounds { minimum_height: 0.5, slope: 5.0, volume: [0.0, 10.0] };
+        let mut scene = scene.with_shapes(|heights| {
+            (heights.start, heights.thickness, heights.volume) = (1.0, Some(0.5), Some([0.0, 10.0]));
         });
         let gap = 1e-6 * 10.0_f64.powf(f64::from(index) / 6.0);
         change_counter_surface(&mut scene, |_| CounterSurface::Plane { height: 1.0 + gap });
@@ -258,7 +256,7 @@ fn bad_scenes_are_refused_naming_the_field() {
     refused(small(signorini().unwrap(), 6, 4), "lower.subdomains[0]");
     refused(signorini().unwrap().with_friction(-0.1), "friction");
     refused(signorini().unwrap().with_friction(f64::NAN), "friction");
-    refused(signorini().unwrap().with_heights(|heights| heights.control_points = [3, 3]), "degree");
+    refused(signorini().unwrap().with_shapes(|heights| heights.control_points = [3, 3, 2]), "degree");
     assert!(matches!(Material::new(1.0, 0.5), Err(SceneError::OutOfRange { .. })));
     assert!(matches!(Material::new(-1.0, 0.3), Err(SceneError::OutOfRange { .. })));
 }

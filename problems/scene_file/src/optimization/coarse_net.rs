@@ -1,25 +1,23 @@
-//! A coarse net of controls within those of a height surface.
+//! A coarse net of controls within those of the bodies.
 
-use contact::contact_objective::ContactObjective;
 use contact::error::SceneError;
-use contact::shape::HeightShape;
-use nonsmooth::Matrix;
+use contact::scene::Scene;
+use contact::shape::CoarseNet;
 
-/// Control points per axis of a coarse net: a bowl or a saddle, with every slope. Nets of 4 were measured to end higher
-/// on the seat of the tutorial, and nets of 3 and then 4 to take more evaluations for the same ends.
+/// Control points along every coordinate of a coarse net: a bowl or a saddle, with every slope. Nets of 4 were measured
+/// to end higher on the seat of the tutorial, and nets of 3 and then 4 to take more evaluations for the same ends.
 const COARSE: usize = 3;
 
-/// Whether a height surface has more control points than a coarse net.
-pub fn has_coarse_net(heights: &HeightShape) -> bool {
-    heights.control_points.iter().any(|count| *count > COARSE)
+/// Whether an optimization of a scene begins with attempts: a shape asks for them, and has more control points than a
+/// coarse net.
+pub fn begins_with_attempts(scene: &Scene) -> bool {
+    scene.shapes().any(|shape| shape.attempts && shape.control_points.iter().any(|count| *count > COARSE))
 }
 
-/// The controls of a coarse net within those of the surface, as directions; none for other shapes.
+/// The coarse net of a scene.
 ///
 /// # Errors
-/// [`SceneError`] for a surface that is none.
-pub fn coarse_directions(objective: &ContactObjective) -> Result<Option<Matrix>, SceneError> {
-    let Some(heights) = objective.solver().problem().scene.heights() else { return Ok(None) };
-    let surface = heights.surface()?;
-    Ok(Some(surface.refinement(&surface.coarser(COARSE)?)?))
+/// As [`Scene::coarse_net`].
+pub fn coarse_net(scene: &Scene) -> Result<CoarseNet, SceneError> {
+    scene.coarse_net(COARSE)
 }

@@ -1,6 +1,6 @@
 //! The runs of an optimization, one after the other.
 
-use crate::optimization::coarse_net::coarse_directions;
+use crate::optimization::coarse_net::coarse_net;
 use crate::optimization::stages::stages;
 use crate::optimization::ways::{Beginning, beginning};
 use crate::optimization::{Attempt, ContactRun, Label, OptimizationError, Part, PlannedRun, Runs};
@@ -9,7 +9,7 @@ use contact::contact_objective::ContactObjective;
 use contact::error::SceneError;
 use contact::solvers::Processes;
 use nonsmooth::runs::{Stage, run_in_turn};
-use nonsmooth::{AccuracyPolicy, BundleTrustConfig, Matrix, VariableScaling, Vector};
+use nonsmooth::{AccuracyPolicy, BundleTrustConfig, VariableScaling, Vector};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -135,17 +135,14 @@ fn stage(
     Beginning { controls: start, first_step, bending_before }: Beginning,
     (config, clock): (&BundleTrustConfig, Instant),
 ) -> Result<ContactStage, OptimizationError> {
-    let directions = match part {
-        Part::Try(Attempt::Coarse) => coarse_directions(&objective)?,
+    let net = match part {
+        Part::Try(Attempt::Coarse) => Some(coarse_net(&objective.solver().problem().scene)?),
         _ => None,
     };
-    let count = directions.as_ref().map_or(start.len(), Matrix::ncols);
-    let scaling = match &config.scaling {
-        VariableScaling::FromBox if directions.is_none() => {
-            VariableScaling::Linear(objective.coordinates(&start, first_step))
-        }
-        given if directions.is_none() => given.clone(),
-        _ => VariableScaling::Linear(objective.coordinates(&Vector::from_element(count, start.mean()), first_step)),
+    let scaling = match (&config.scaling, &net) {
+        (_, Some(net)) => VariableScaling::Linear(objective.net_coordinates(&start, &net.counts, first_step)),
+        (VariableScaling::FromBox, None) => VariableScaling::Linear(objective.coordinates(&start, first_step)),
+        (given, None) => given.clone(),
     };
     let (tolerance, evaluations) = match part {
         Part::Try(attempt) => ends(attempt),
@@ -162,5 +159,5 @@ fn stage(
         ..config.clone()
     };
     let set = objective.solver().problem().admissible.polyhedron().clone();
-    Ok(Stage { label: Label { part, bending_before }, objective, set, start, directions, config })
+    Ok(Stage { label: Label { part, bending_before }, objective, set, start, directions: net.map(|net| net.directions), config })
 }

@@ -6,11 +6,12 @@
 //! G is the Jacobian of the pressures σ, case by case, s > 0 are the gaps of open nodes with their Jacobian S: to first
 //! order all nodes that carry go on as they do, and no other one begins to. Θ does not see what is left.
 
+use crate::optimization::OptimizationError;
 use contact::contact_objective::ContactObjective;
-use contact::shape::bending;
+use contact::error::SceneError;
 use nonsmooth::composite::{Linearization, LinearizationRequest, Linearized};
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric, project};
-use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, OracleError, Polyhedron, Request, Vector};
+use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, Polyhedron, Request, Vector};
 
 /// ε, the change of a pressure over the largest one that counts as none, and that of any other output over itself.
 const SAME: f64 = 1e-3;
@@ -28,24 +29,21 @@ pub struct FairShape {
     pub before: f64,
 }
 
-/// αᵀBα of height surfaces; none for other shapes.
-pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Option<f64> {
-    matrix(objective).map(|matrix| controls.dot(&(matrix * controls)))
-}
-
-fn matrix(objective: &ContactObjective) -> Option<Matrix> {
-    let scene = &objective.solver().problem().scene;
-    let (block, heights) = scene.shaped_block()?;
-    Some(bending(&heights.surface().ok()?, block.size))
+/// αᵀBα of the controls of all bodies.
+///
+/// # Errors
+/// As [`Scene::bending`](contact::scene::Scene::bending).
+pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Result<f64, SceneError> {
+    Ok(controls.dot(&(objective.solver().problem().scene.bending()? * controls)))
 }
 
 /// The shape of least bending that is as good as this one to first order; none where it would hardly bend less, or
 /// where Θ is no function of the pressures. Takes an evaluation with a Jacobian.
 ///
 /// # Errors
-/// [`OracleError`] of the contact solver.
-pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, OracleError> {
-    let Some(matrix) = matrix(objective) else { return Ok(None) };
+/// [`OptimizationError::Derivatives`] from the contact solver.
+pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, OptimizationError> {
+    let matrix = objective.solver().problem().scene.bending()?;
     let accuracy = Accuracy::relative(1e-4).unwrap_or(Accuracy::TIGHTEST);
     let wanted = LinearizationRequest { accuracy, below: f64::INFINITY };
     let request = Request { linearization: Some(wanted), ..Request::tight(controls) };

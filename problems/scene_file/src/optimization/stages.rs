@@ -1,6 +1,6 @@
 //! The runs of an optimization: one, one per growing mesh, one per start, or attempts with a run from the best of them.
 
-use crate::optimization::coarse_net::has_coarse_net;
+use crate::optimization::coarse_net::begins_with_attempts;
 use crate::{Case, ContinuationMesh, MethodName, default_subdomains};
 use contact::scene::BodyScene;
 use nonsmooth::Journal;
@@ -75,12 +75,12 @@ pub struct PlannedRun {
 }
 
 /// The attempts of a case: the direct way, coarse to fine in the controls, other starts. None where one run is asked
-/// for or where there is no coarse net, and for functions of the displacements: their runs by cuts are long, and were
+/// for or where no shape asks for them, and for functions of the displacements: their runs by cuts are long, and were
 /// measured to end at the same values.
 fn attempts(case: &Case) -> Vec<Attempt> {
     let optimizer = &case.optimizer;
     let single = optimizer.single || !optimizer.continuation.is_empty() || case.method == MethodName::Bundle;
-    if single || !case.scene.heights().is_some_and(has_coarse_net) {
+    if single || !begins_with_attempts(&case.scene) {
         return vec![];
     }
     let starts = (2..=optimizer.starts).map(Attempt::Start);

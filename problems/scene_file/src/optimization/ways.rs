@@ -1,6 +1,6 @@
 //! Where the runs of an optimization begin: the start of the scene, other starts, or what earlier runs have found.
 
-use crate::optimization::coarse_net::coarse_directions;
+use crate::optimization::coarse_net::coarse_net;
 use crate::optimization::fairness::fair_shape;
 use crate::optimization::runs::{AGREES, ContactRun, best, violation};
 use crate::optimization::{Attempt, OptimizationError, Part};
@@ -84,26 +84,23 @@ fn fairer(
     }))
 }
 
-/// A further start, moved into the admissible set, always the same for its number: the second follows the counter
-/// surface, the others are random in the coarse net, so that they differ as shapes and not as noise. Lattices have
-/// random displacements.
+/// A further start, moved into the admissible set, always the same for its number: where all controls are heights, the
+/// second follows what lies opposite to them; the others are random in the coarse net, so that they differ as shapes
+/// and not as noise.
 fn other_start(
     objective: &ContactObjective,
     (start, first_step): (&Vector, f64),
     number: usize,
 ) -> Result<Vector, OptimizationError> {
-    let set = objective.solver().problem().admissible.polyhedron();
-    let random = |count: usize| seeded_direction(count, number as u64);
-    let direction = match (coarse_directions(objective)?, number) {
-        (Some(_), 2) => {
-            let ceiling = set.upper();
-            ceiling.add_scalar(-ceiling.mean())
-        }
-        (Some(directions), _) => &directions * random(directions.ncols()),
-        (None, _) => random(start.len()),
+    let problem = objective.solver().problem();
+    let set = problem.admissible.polyhedron();
+    let ceiling = set.upper().add_scalar(-set.upper().mean());
+    let follows = number == 2 && ceiling.amax().is_finite() && ceiling.amax() > 0.0;
+    let (direction, length) = if follows && problem.scene.shapes().all(|shape| shape.face().is_some()) {
+        (ceiling.clone(), ceiling.amax())
+    } else {
+        let net = coarse_net(&problem.scene)?.directions;
+        (&net * seeded_direction(net.ncols(), number as u64), CHANGE * first_step)
     };
-    let size = direction.amax();
-    let follows = number == 2 && size.is_finite() && objective.solver().problem().scene.heights().is_some();
-    let length = if follows { size } else { CHANGE * first_step };
     moved_start(set, start, &direction, length).map_err(|source| OptimizationError::Start { number, source })
 }

@@ -35,10 +35,7 @@ pub fn triangles(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Outpu
 }
 
 /// The skin of a body as triangles between the nodes of its mesh.
-///
-/// # Errors
-/// [`Failure`] for positions that are no numbers.
-pub fn skin(problem: &ContactProblem, body: usize, positions: &Positions) -> Result<OutputFile, Failure> {
+fn skin(problem: &ContactProblem, body: usize, positions: &Positions) -> Result<OutputFile, Failure> {
     let Body { mesh, name, .. } = &problem.bodies[body];
     let triangles = flat(mesh, &mesh.skin(), &positions[body]);
     let what = format!("the {}, closed", scene_words::body(name));

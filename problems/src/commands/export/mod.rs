@@ -32,8 +32,6 @@ struct ExportJson {
     /// How the friction problem differs from that of the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     differences: Vec<String>,
-    /// Largest distance between triangles and surface, mm; null without files of triangles.
-    tolerance: Option<f64>,
     files: Vec<FileJson>,
 }
 
@@ -82,7 +80,6 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder: path.display().to_string(),
         shape: origin,
         differences: differences.iter().map(Difference::to_string).collect(),
-        tolerance: ((options.stl || options.is_free()) && block.is_some()).then(|| options.tolerance()),
         files: files.iter().map(describe).collect(),
     };
     let text = arguments.printed(result.to_string(), json(&result)?);
@@ -104,9 +101,16 @@ fn files(
     let written = controls::written(controls, Layout::of(&problem.scene))?;
     let what = "the controls; --controls and --start-controls take the file";
     let mut files = vec![OutputFile::text("controls.json", written, what)];
+    if options.stl || options.is_free() {
+        files.extend(mesh::triangles(problem, controls)?);
+    }
     match block {
-        Some(block) => files.extend(of_block(problem, block, controls, options)?),
-        None => files.extend(of_mesh(problem, controls, options)?),
+        Some(block) => files.extend(of_block(block, controls, options)?),
+        None if options.step => {
+            let allowed = "for heights of a face of the only optimized block; every shape has --stl and --msh";
+            refused("--step", allowed)?;
+        }
+        None => {}
     }
     if options.csv || options.is_free() {
         files.push(change::table(problem, controls));
@@ -124,30 +128,9 @@ fn files(
     Ok(files)
 }
 
-/// The files of the shape of a block. Other bodies go with it as triangles: those that are no block with a plane as
-/// triangles between the nodes of their meshes.
-fn of_block(
-    problem: &ContactProblem,
-    block: Block<'_>,
-    controls: &[f64],
-    options: &ExportOptions,
-) -> Result<Vec<OutputFile>, Failure> {
+/// The files that only heights of a face of a block have.
+fn of_block(block: Block<'_>, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
     let mut files = Vec::new();
-    if options.stl || options.is_free() {
-        let (tolerance, positions) = (options.tolerance(), problem.map.positions(controls));
-        files.extend(shape::triangles(block, controls, tolerance)?);
-        for body in 0..problem.bodies.len() {
-            let (own, has_plane) = (body == block.body, block.plane().is_some());
-            match own {
-                true if has_plane => {}
-                true => files.push(mesh::skin(problem, body, &positions)?),
-                false => files.push(match shape::other_block(block, body, (controls, tolerance))? {
-                    Some(file) => file,
-                    None => mesh::skin(problem, body, &positions)?,
-                }),
-            }
-        }
-    }
     if options.step {
         block.check_solid()?;
     }
@@ -156,25 +139,6 @@ fn of_block(
     }
     if options.csv || options.is_free() {
         files.push(shape::table(block, controls)?);
-    }
-    Ok(files)
-}
-
-/// The files of the shape of a mesh, or of several bodies.
-fn of_mesh(problem: &ContactProblem, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
-    let shaped = problem.scene.bodies.iter().filter(|body| body.shape.is_some()).count();
-    if options.step && shaped > 1 {
-        refused("--step", "for the height surface of one block; several optimized bodies have --stl and --msh")?;
-    }
-    if options.step {
-        refused("--step", "for the height surface of a block; a mesh has --stl and --msh")?;
-    }
-    if options.tolerance.is_some() {
-        refused("--tolerance", "for the height surface of a block; triangles of a mesh lie between its nodes")?;
-    }
-    let mut files = Vec::new();
-    if options.stl || options.is_free() {
-        files.extend(mesh::triangles(problem, controls)?);
     }
     Ok(files)
 }

@@ -4,9 +4,6 @@ use crate::commands::failure::{Failure, refused};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Distance between triangles and surface, mm, where no option says it.
-const DEFAULT_TOLERANCE: f64 = 1e-3;
-
 /// What `export` writes, and of which shape.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 #[command(next_help_heading = "Export")]
@@ -18,7 +15,7 @@ pub struct ExportOptions {
     /// With --run: the shape of evaluation K instead.
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
-    /// Bodies and surface as triangles. Without one of --stl, --step, --csv, --msh, --vtu, --friction-problem the first
+    /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv, --msh, --vtu, --friction-problem the first
     /// three are written, or for a mesh --stl, --csv, --msh and --vtu.
     #[arg(long)]
     pub stl: bool,
@@ -40,17 +37,9 @@ pub struct ExportOptions {
     /// With --friction-problem: the load case of a scene that has several.
     #[arg(long, value_name = "NAME")]
     pub case: Option<String>,
-    /// Largest distance between triangles and surface, mm [default: 1e-3].
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
-    pub tolerance: Option<f64>,
 }
 
 impl ExportOptions {
-    /// Largest distance between triangles and surface, mm.
-    pub fn tolerance(&self) -> f64 {
-        self.tolerance.unwrap_or(DEFAULT_TOLERANCE)
-    }
-
     /// Whether no format is named.
     pub fn is_free(&self) -> bool {
         !(self.stl || self.step || self.csv || self.msh || self.vtu || self.friction_problem)
@@ -70,16 +59,6 @@ impl ExportOptions {
         if self.case.is_some() && !self.friction_problem {
             return refused("--case", "with --friction-problem only: the shape is the same in all cases");
         }
-        if self.tolerance.is_some() && !(self.stl || self.is_free()) {
-            return refused("--tolerance", "with --stl only, or without any format");
-        }
         Ok(())
     }
-}
-
-fn tolerance(text: &str) -> Result<f64, &'static str> {
-    text.parse()
-        .ok()
-        .filter(|number: &f64| *number > 0.0 && number.is_finite())
-        .ok_or("allowed: a finite number > 0 (mm)")
 }

@@ -10,7 +10,7 @@ use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{Difference, differences, is_below};
 use contact::error::SceneError;
 use contact::scene::{Block, BodyScene, CounterSurface, Scene};
-use contact::shape::ShapedFace;
+use contact::shape::{LatticeShape, ShapedFace};
 use nonsmooth::journal::{Entry, RecordedAnswer};
 use nonsmooth::{Journal, Vector};
 use scene_file::optimization::{PlannedRun, last_begun, stages};
@@ -232,7 +232,7 @@ fn last(case: &Case, root: &Path, folder: &Path) -> Case {
 fn other_files(there: &Scene, here: &Scene) -> Option<String> {
     let obstacle = |scene: &Scene| scene.contacts.iter().map(|contact| contact.obstacle().cloned()).collect::<Vec<_>>();
     let faces = |body: &BodyScene| {
-        let shaped = body.heights().map(|heights| heights.face);
+        let shaped = body.heights().and_then(LatticeShape::face);
         let faces = |block: &Block| {
             let face = |face, surface: &CounterSurface| (shaped != Some(face)).then(|| surface.clone());
             let faces = [face(ShapedFace::Bottom, &block.bottom), face(ShapedFace::Top, &block.top)];

@@ -295,7 +295,7 @@ impl Ended<'_> {
             facts.push(Fact::new("all_evaluations", "evaluations of all runs", self.runs.evaluations(), ""));
         }
         let ContactRun { stage: ContactStage { label, objective, .. }, report, .. } = self.last;
-        if let (Some(before), Some(after)) = (label.bending_before, bending_of(objective, &report.solution)) {
+        if let (Some(before), Ok(after)) = (label.bending_before, bending_of(objective, &report.solution)) {
             let words = format!("{} -> {}", number(before), number(after));
             let meaning = "of shapes that are as good, the one that bends least was taken: controls that the objective does not see are \
                            smooth";

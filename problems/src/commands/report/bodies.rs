@@ -8,7 +8,7 @@ use crate::commands::solved_shape::ContactObjective;
 use contact::equilibrium::ContactProblem;
 use contact::fields::BodyFields;
 use contact::scene::Scene;
-use contact::shape::Positions;
+use contact::shape::{LatticeShape, Positions};
 use figures::{ColourScales, Figure, FigureError, Map, MapPanel, nice_below};
 
 /// Largest displacement that is drawn, as a share of the largest side of the bodies.
@@ -83,7 +83,8 @@ impl Relief {
             *normal = normal.map(|x| x / length);
         }
         let heights = problem.scene.bodies[surface.body].heights();
-        let is_height = heights.is_some_and(|heights| heights.face.block_face().name() == surface.face);
+        let is_height =
+            heights.and_then(LatticeShape::face).is_some_and(|face| face.block_face().name() == surface.face);
         Self { is_height, surface, normals, start }
     }
 

@@ -11,7 +11,7 @@ use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::StageSeconds;
 use contact::scene::{self, BodyScene};
-use contact::shape::{HeightShape, ShapeScene};
+use contact::shape::LatticeShape;
 use figures::page::{Block, Page, Section};
 use std::path::Path;
 
@@ -79,26 +79,25 @@ fn controls(objective: &ContactObjective, controls: &[f64]) -> Vec<Section> {
     let scene = &objective.solver().problem().scene;
     let shaped = || scene.bodies.iter().filter_map(|body| Some((body, body.shape.as_ref()?)));
     let (several, mut rest) = (shaped().count() > 1, controls);
-    let section = |(body, shape): (&BodyScene, &ShapeScene)| {
+    let section = |(body, shape): (&BodyScene, &LatticeShape)| {
         let own;
         (own, rest) = rest.split_at(shape.control_count().min(rest.len()));
         let of_body = if several { format!(" of {}", body.name) } else { String::new() };
-        match (shape, body.block()) {
-            (ShapeScene::Heights(shape), Some(block)) => heights(shape, block, &of_body, own),
-            (ShapeScene::Lattice(lattice), _) => {
-                let rows = lattice.control_names().into_iter().zip(own);
+        match (body.block(), body.heights()) {
+            (Some(block), Some(shape)) => heights(shape, block, &of_body, own),
+            _ => {
+                let rows = shape.control_names(body.start_block().as_ref()).into_iter().zip(own);
                 let rows = rows.map(|(name, value)| vec![name, number(*value)]).collect::<Vec<_>>();
                 let table = Block::table(["control", "displacement, mm"], rows);
                 Section::new(&format!("Displacements of the control points{of_body}"), vec![table])
             }
-            _ => Section::default(),
         }
     };
     shaped().map(section).collect()
 }
 
 /// Control heights with their places: a row per control point along x₁.
-fn heights(shape: &HeightShape, block: &scene::Block, of_body: &str, heights: &[f64]) -> Section {
+fn heights(shape: &LatticeShape, block: &scene::Block, of_body: &str, heights: &[f64]) -> Section {
     let Ok(surface) = shape.surface() else { return Section::default() };
     let mut places = surface.control_places(block.size);
     for (places, corner) in places.iter_mut().zip(block.corner) {

@@ -16,7 +16,7 @@ pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for height in [1e-2, 0.1, 1.0, 100.0, 1e3, 1e4] {
         let scene = stacked(0.3, 1.0, 0.05).map(|scene| {
-            let mut scene = scene.with_heights(|heights| heights.start_height = height);
+            let mut scene = scene.with_shapes(|heights| heights.start = height);
             if let Geometry::Block(block) = &mut scene.bodies[1].geometry {
                 block.top = CounterSurface::Plane { height: 2.0 * height };
             }

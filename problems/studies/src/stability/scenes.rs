@@ -6,7 +6,7 @@ use contact::error::SceneError;
 use contact::scene::{
     Block, BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, Master, Scene, Support, hertz, signorini,
 };
-use contact::shape::{HeightShape, ShapeBounds, ShapeScene, ShapedFace, SplineKind};
+use contact::shape::{LatticeShape, ShapedFace};
 
 pub const HELD: [bool; 3] = [true; 3];
 
@@ -31,14 +31,7 @@ pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneE
     };
     let mut upper_loads = sides();
     upper_loads.push(Load::traction(BlockFace::Top, [shear, 0.0, -pressure]));
-    let shape = ShapeScene::Heights(HeightShape {
-        face: ShapedFace::Top,
-        spline: SplineKind::BSpline(1),
-        control_points: [2, 2],
-        bounds: ShapeBounds { minimum_height: 1e-9, slope: 1e6, volume: [1e-9, 1e12] },
-        start_height: 10.0,
-        fairness: 0.0,
-    });
+    let shape = LatticeShape::heights(ShapedFace::Top, [2, 2], [1, 1], 10.0);
     let below = Block::new([10.0, 10.0], 10.0, [4; 3], [2; 3]);
     let [bottom, top] = [10.0, 20.0].map(|height| CounterSurface::Plane { height });
     let above = Block { bottom, top, ..below.clone() };

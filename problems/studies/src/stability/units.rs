@@ -22,10 +22,10 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
         block.size = block.size.map(|length| s * length);
         (block.bottom, block.top) = (surface(&block.bottom, s), surface(&block.top, s));
     });
-    let mut scene = scene.with_heights(|heights| {
-        heights.start_height *= s;
-        heights.bounds.minimum_height *= s;
-        heights.bounds.volume = heights.bounds.volume.map(|volume| s.powi(3) * volume);
+    let mut scene = scene.with_shapes(|heights| {
+        heights.start *= s;
+        heights.thickness = heights.thickness.map(|thickness| s * thickness);
+        heights.volume = heights.volume.map(|range| range.map(|volume| s.powi(3) * volume));
     });
     for contact in &mut scene.contacts {
         if let Master::Obstacle(obstacle) = &mut contact.master {

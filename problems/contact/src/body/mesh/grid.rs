@@ -28,6 +28,13 @@ impl Grid {
         (i * n2 + j) * n3 + k
     }
 
+    /// Place (i/n₁, j/n₂, k/n₃) of a node by its index.
+    pub fn share(&self, node: usize) -> [f64; 3] {
+        let [_, n2, n3] = self.nodes();
+        let index = [node / (n2 * n3), node / n3 % n2, node % n3];
+        std::array::from_fn(|axis| index[axis] as f64 / self.cells[axis] as f64)
+    }
+
     /// Number of vertical columns of nodes, the points of a surface.
     pub fn column_count(&self) -> usize {
         (self.cells[0] + 1) * (self.cells[1] + 1)

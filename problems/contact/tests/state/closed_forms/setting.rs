@@ -6,7 +6,7 @@ use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::scene::{
     Block, BodyFace, BodyScene, ContactScene, CounterSurface, Geometry, Load, Master, Scene, Support,
 };
-use contact::shape::{HeightShape, ShapeBounds, ShapeScene, ShapedFace, SplineKind};
+use contact::shape::{LatticeShape, ShapedFace};
 use nonsmooth::{Accuracy, StateSolver};
 
 pub const FIRST: [bool; 3] = [true, false, false];
@@ -23,18 +23,11 @@ pub fn load(face: BlockFace, traction: [f64; 3]) -> Load {
 }
 
 pub fn block(size: [f64; 2], height: f64, bricks: [usize; 3], material: Material, obstacle: CounterSurface) -> Scene {
-    let heights = HeightShape {
-        face: ShapedFace::Top,
-        spline: SplineKind::BSpline(1),
-        control_points: [2, 2],
-        bounds: ShapeBounds { minimum_height: 0.0, slope: 1e3, volume: [0.0, 1e30] },
-        start_height: height,
-        fairness: 0.0,
-    };
+    let heights = LatticeShape::heights(ShapedFace::Top, [2, 2], [1, 1], height);
     Scene {
         name: "closed form".into(),
         bodies: vec![BodyScene {
-            shape: Some(ShapeScene::Heights(heights)),
+            shape: Some(heights),
             ..BodyScene::new("lower", Geometry::Block(Block::new(size, height, bricks, [1; 3])), material)
         }],
         contacts: vec![ContactScene::along_x3(BodyFace::new(0, BlockFace::Top), Master::Obstacle(obstacle), 0.0)],
