@@ -54,6 +54,7 @@ fn a_run_of_several_parts_resumes_to_the_same_bits() {
 /// Two blocks whose facing sides are shaped: heights of the lower one, a lattice in space of the upper one.
 const SHAPED: &str = r#"
 name = "shaped"
+friction = 0.2
 
 [[body]]
 name = "base"
@@ -88,7 +89,6 @@ attempts = true
 [[contact]]
 slave = { body = "base", face = "top" }
 master = { body = "punch", face = "bottom" }
-friction = 0.2
 "#;
 
 /// Coarse nets, further starts and the bending are those of all bodies, whatever their controls are.
