@@ -5,7 +5,6 @@ use std::path::Path;
 use testset::kit::{self, json, scratch, text};
 
 const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
-const HERTZ: &str = env!("CARGO_BIN_EXE_hertz3d");
 
 fn scene(name: &str) -> String {
     format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))

@@ -86,6 +86,7 @@ fn meshes_of_files_grow_and_resume() {
 /// Two blocks whose facing sides are shaped: heights of the lower one, a lattice in space of the upper one.
 const SHAPED: &str = r#"
 name = "shaped"
+friction = 0.2
 
 [[body]]
 name = "base"
@@ -120,7 +121,6 @@ attempts = true
 [[contact]]
 slave = { body = "base", face = "top" }
 master = { body = "punch", face = "bottom" }
-friction = 0.2
 "#;
 
 /// Coarse nets, further starts and the bending are those of all bodies, whatever their controls are.

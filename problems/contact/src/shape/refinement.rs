@@ -68,7 +68,7 @@ impl LatticeShape {
                 for known in orthonormal.iter().chain(&orthonormal) {
                     rest -= known * known.dot(&rest);
                 }
-                if rest.norm() > INDEPENDENT * column.norm() {
+                if rest.norm() > INDEPENDENT * points.column(point).norm() {
                     orthonormal.push(rest.normalize());
                     columns.push(column);
                 }

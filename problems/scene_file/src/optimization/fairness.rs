@@ -20,6 +20,9 @@ const WORTH: f64 = 0.2;
 /// Weight of the distance to the shape itself, over the largest entry of B: it decides among planes.
 const DISTANCE: f64 = 1e-9;
 
+/// Relative rounding of sums of differences.
+const ROUNDING: f64 = 1e-12;
+
 /// A fairer shape and what it changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FairShape {
@@ -32,9 +35,15 @@ pub struct FairShape {
 /// αᵀBα of the controls of all bodies.
 ///
 /// # Errors
-/// As [`Scene::bending`](contact::scene::Scene::bending).
+/// As [`Scene::bending_rows`](contact::scene::Scene::bending_rows).
 pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Result<f64, SceneError> {
-    Ok(controls.dot(&(objective.solver().problem().scene.bending()? * controls)))
+    Ok(bending(&objective.solver().problem().scene.bending_rows()?, controls))
+}
+
+/// |Rα|²; 0 where it is rounding, which decides nothing.
+fn bending(rows: &Matrix, controls: &Vector) -> f64 {
+    let (found, terms) = (rows * controls, rows.abs() * controls.abs());
+    if found.norm() > ROUNDING * terms.norm() { found.norm_squared() } else { 0.0 }
 }
 
 /// The shape of least bending that is as good as this one to first order; none where it would hardly bend less, or
@@ -43,7 +52,7 @@ pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Result<f64
 /// # Errors
 /// [`OptimizationError::Derivatives`] from the contact solver.
 pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, OptimizationError> {
-    let matrix = objective.solver().problem().scene.bending()?;
+    let rows = objective.solver().problem().scene.bending_rows()?;
     let accuracy = Accuracy::relative(1e-4).unwrap_or(Accuracy::TIGHTEST);
     let wanted = LinearizationRequest { accuracy, below: f64::INFINITY };
     let request = Request { linearization: Some(wanted), ..Request::tight(controls) };
@@ -51,9 +60,9 @@ pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Opt
     let Linearized::Known(linearization) = &evaluation.linearization else { return Ok(None) };
     let set = objective.solver().problem().admissible.polyhedron();
     let sizes = objective.cost().sizes(&linearization.outputs);
-    let Some(step) = fairest(&matrix, (linearization, &sizes), set, controls) else { return Ok(None) };
+    let Some(step) = fairest(&rows.tr_mul(&rows), (linearization, &sizes), set, controls) else { return Ok(None) };
     let Ok(fair) = project(set, &(controls + step)) else { return Ok(None) };
-    let [before, after] = [controls, &fair].map(|controls| controls.dot(&(&matrix * controls)));
+    let [before, after] = [controls, &fair].map(|controls| bending(&rows, controls));
     Ok((after < (1.0 - WORTH) * before).then_some(FairShape { controls: fair, before }))
 }
 
