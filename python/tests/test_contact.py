@@ -154,8 +154,10 @@ def test_results_have_the_warnings_of_the_commands():
         "supports": [{"face": "bottom", "held": ["u1", "u2", "u3"]}],
         "loads": [{"face": "x1-max", "traction": [0.0, 0.0, -1.0]}],
         "block": {"size": [20.0, 20.0], "bricks": [4, 4, 4]},
-        "surface": {"start": {"form": "plane", "height": 20.0}},
-        "admissible": {"minimum_height": 15.0, "slope": 1.0, "volume": [1000.0, 9000.0]},
+        "lattice": {
+            "heights": "top", "start": {"form": "plane", "height": 20.0},
+            "thickness": 15.0, "slope": 1.0, "volume": [1000.0, 9000.0],
+        },
     }
     scene = contact.Scene(
         name="never touches", friction=0.3, body=[body],
@@ -200,7 +202,7 @@ def test_a_run_is_resumed(tmp_path):
         ({"friction": -0.3}, "friction = -0.3 is not allowed"),
         ({"body[0].block.bricks": [0, 4, 4]}, r"body\[0\].block.bricks\[0\] = 0"),
         ({"friction": np.nan}, "friction = nan is not allowed"),
-        ({"body[0].surface.start.height": float("inf")}, r"body\[0\].surface.start.height = inf"),
+        ({"body[0].lattice.start.height": float("inf")}, r"body\[0\].lattice.start.height = inf"),
         ({"body[2].name": "third"}, "without gap"),
     ],
 )

@@ -1,8 +1,7 @@
 //! Bodies of a scene file: blocks of bricks and meshes.
 
 use crate::{
-    AdmissibleSection, LatticeSection, LoadSection, MaterialSection, ObstacleSection, SupportSection, SurfaceSection,
-    UnitName, VolumeMaterialSection,
+    LatticeSection, LoadSection, MaterialSection, ObstacleSection, SupportSection, UnitName, VolumeMaterialSection,
 };
 use contact::error::SceneError;
 use schemars::JsonSchema;
@@ -41,13 +40,7 @@ pub struct BodySection {
     /// The loads; none on a contact face of a block.
     #[serde(default)]
     pub loads: Vec<LoadSection>,
-    /// The optimized surface of a block. Default none: its faces keep their shape.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub surface: Option<SurfaceSection>,
-    /// Bounds of the surface of a block.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub admissible: Option<AdmissibleSection>,
-    /// The shapes of a mesh, or of a block without surface. Default none: it keeps its shape.
+    /// The optimized shape. Default none: the body keeps its shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lattice: Option<LatticeSection>,
 }
@@ -72,10 +65,10 @@ pub struct BlockSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub subdomains: Option<[usize; 3]>,
-    /// Heights of its bottom. Default the plane x3 = 0; none where the surface shapes it.
+    /// Heights of its bottom. Default the plane x3 = 0; none where the lattice shapes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bottom: Option<ObstacleSection>,
-    /// Heights of its top. Required unless the surface shapes it.
+    /// Heights of its top. Required unless the lattice shapes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub top: Option<ObstacleSection>,
 }

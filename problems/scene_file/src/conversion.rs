@@ -3,7 +3,7 @@
 use crate::bodies::default_subdomains;
 use crate::mesh_check::doubts_of_unit;
 use crate::mesh_file::MeshFile;
-use crate::shapes::{heights, obstacle};
+use crate::shapes::obstacle;
 use crate::{BlockSection, BodySection, ContactSection, FaceSection, SceneFile, UnitName, loading};
 use contact::error::SceneError;
 use contact::names::{find, find_face};
@@ -71,25 +71,14 @@ fn body(
     sources: &Sources<'_>,
     notes: &mut Vec<String>,
 ) -> Result<(BodyScene, Option<Vec<f64>>), SceneError> {
-    let refused = |field: &str, allowed: &str| {
-        Err::<(), _>(SceneError::out_of_range(format!("{at}.{field}"), "a value", allowed))
-    };
-    let shaped = match (&section.surface, &section.block) {
+    let heights = section.lattice.as_ref().and_then(|lattice| Some((lattice, lattice.heights?)));
+    let shaped = match (heights, &section.block) {
+        (Some((lattice, face)), Some(block)) => Some(lattice.height_shape(face, block.size, sources.folder)?),
         (Some(_), None) => {
-            refused("surface", "a lattice for a mesh: a surface shapes blocks only")?;
-            None
+            let allowed = "none for a mesh: heights are those of a face of a block";
+            return Err(SceneError::out_of_range(format!("{at}.lattice.heights"), "a face", allowed));
         }
-        (Some(surface), Some(block)) => {
-            let field = format!("{at}.admissible");
-            let admissible = required(&field, section.admissible.as_ref(), "a table, for the bounds of the surface")?;
-            Some(heights((surface, admissible), block.size, sources.folder)?)
-        }
-        (None, _) => {
-            if section.admissible.is_some() {
-                refused("admissible", "none without a surface")?;
-            }
-            None
-        }
+        (None, _) => None,
     };
     let geometry = match (&section.block, &section.mesh) {
         (Some(block), None) => {
@@ -114,8 +103,7 @@ fn body(
     };
     let mut start = None;
     match (shaped, &section.lattice) {
-        (Some(_), Some(_)) => refused("lattice", "a surface or a lattice, not both")?,
-        (Some((shape, controls)), None) => (body.shape, start) = (Some(shape), controls),
+        (Some((shape, controls)), _) => (body.shape, start) = (Some(shape), controls),
         (None, Some(lattice)) => body.shape = Some(lattice.shape(&body.mesh()?.0)?),
         (None, None) => {}
     }
@@ -130,7 +118,7 @@ fn block_of(at: &str, block: &BlockSection, shaped: Option<&LatticeShape>, folde
         let (field, shaped) = (format!("{at}.{name}"), shaped.filter(|shape| shape.face() == Some(face)));
         match (given, shaped) {
             (Some(_), Some(_)) => {
-                Err(SceneError::out_of_range(field, "a table", "none: the surface of the body shapes this face"))
+                Err(SceneError::out_of_range(field, "a table", "none: the lattice of the body shapes this face"))
             }
             (Some(section), None) => obstacle(&field, section, Some(([0.0; 2], block.size)), folder),
             (None, Some(shape)) => Ok(CounterSurface::Plane { height: shape.start }),

@@ -1,29 +1,46 @@
-//! The lattice of a scene file: free-form shapes of any region.
+//! The lattice of a scene file: heights of a face of a block, and free-form shapes of any region.
 
-use crate::FairnessSection;
+use crate::conversion::required;
+use crate::{StartSection, shapes};
 use contact::body::mesh::Mesh;
 use contact::error::SceneError;
 use contact::names::nodes_of;
-use contact::shape::{Coordinates, Directions, LatticeShape, NodeBound};
+use contact::shape::{Coordinates, Directions, LatticeShape, NodeBound, ShapedFace};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
+/// Control points along x1, x2 of heights where the scene does not say, and highest degree without being asked for.
+const HEIGHTS: [usize; 2] = [6, 6];
+const USUAL_DEGREE: usize = 3;
 /// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
 const MARGIN: f64 = 1e-6;
 
-/// A lattice of control points around a region of the body: x = x0 + sum of B-splines times displacements of the
-/// control points, which are the controls (mm). Nodes outside its box stay where they are.
+/// The optimized shape of a body. Either the heights of a face of a block (`heights`), control points over its base; or
+/// displacements of control points in a lattice around a region: x = x0 + sum of B-splines times displacements (mm).
+/// Nodes outside the box of the lattice stay where they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSection {
-    /// Control points along the three coordinates of the box.
+    /// The face of a block whose heights are the controls, in place of displacements. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heights: Option<ShapedFace>,
+    /// Control points along the three coordinates of the box; along x1, x2 for heights. Default [6, 6] for heights.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 40)), extend("x-unit" = "1"))]
-    pub control_points: [usize; 3],
-    /// Degrees of the B-splines, less than the control points; control points less one give Bernstein polynomials.
-    /// Default 3, or as many as the control points allow.
+    pub control_points: Option<Vec<usize>>,
+    /// Degrees of the B-splines along the same coordinates, or one for all, less than the control points; control points
+    /// less one give Bernstein polynomials. Default 3, or as many as the control points allow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0, max = 39)), extend("x-unit" = "1"))]
-    pub degrees: Option<[usize; 3]>,
+    pub degrees: Option<Vec<usize>>,
+    /// The heights that an optimization starts from; required for heights, and for heights alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<StartSection>,
+    /// Least distance of a control point from the other face of the block; required for heights, and for heights alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
+    pub thickness: Option<f64>,
     /// Two opposite corners of a box along the axes. Default the box around the region; not with corner and edges or
     /// with cylinder.
     #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
@@ -66,11 +83,12 @@ pub struct LatticeSection {
     #[serde(default)]
     #[schemars(extend("x-unit" = "1"))]
     pub frozen: [[usize; 2]; 3],
-    /// Least and largest displacement of a control point.
+    /// Least and largest displacement of a control point; required without heights.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
-    pub displacement: [f64; 2],
-    /// Largest slope of the net of control points: the difference of the displacements of neighbours over the distance
-    /// of their places. Default none.
+    pub displacement: Option<[f64; 2]>,
+    /// Largest slope of the net of control points: the difference of neighbours over the distance of their places.
+    /// Default none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "1", "exclusiveMinimum" = 0.0))]
     pub slope: Option<f64>,
@@ -79,12 +97,15 @@ pub struct LatticeSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
     pub volume: Option<[f64; 2]>,
-    /// A fairer shape than the measure alone asks for. Default none.
+    /// The factor of the bending of the net of control points, ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² for heights F, a number
+    /// without unit, which is added to the objective for a fairer shape. Default 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fairness: Option<FairnessSection>,
+    #[schemars(range(min = 0.0, max = 1e60), extend("x-unit" = "unit of the objective"))]
+    pub fairness: Option<f64>,
     /// Whether an optimization begins with short attempts, one of them on a net of 3 control points per coordinate.
-    #[serde(default)]
-    pub attempts: bool,
+    /// Default true for heights, else false.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attempts: Option<bool>,
     /// Bounds of the displacements of nodes by the shape, a row each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bounds: Vec<NodeBoundSection>,
@@ -133,11 +154,93 @@ fn yes() -> bool {
 }
 
 impl LatticeSection {
-    /// The shape on a mesh.
+    /// Heights of a face of a block over a base of this size, and the controls at the start where they are not all
+    /// alike.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for fields of displacements, for a start that is missing, and for too few control
+    /// points.
+    pub(crate) fn height_shape(
+        &self,
+        face: ShapedFace,
+        size: [f64; 2],
+        folder: &Path,
+    ) -> Result<(LatticeShape, Option<Vec<f64>>), SceneError> {
+        for (field, given) in [
+            ("box", self.bounds_of_box.is_some()),
+            ("corner", self.corner.is_some()),
+            ("edges", self.edges.is_some()),
+            ("cylinder", self.cylinder.is_some()),
+            ("directions", self.directions.is_some()),
+            ("normal", self.normal.is_some()),
+            ("region", !self.region.is_empty()),
+            ("fixed", !self.fixed.is_empty()),
+            ("symmetric", !self.symmetric.is_empty()),
+            ("frozen", self.frozen != [[0; 2]; 3]),
+            ("displacement", self.displacement.is_some()),
+            ("bounds", !self.bounds.is_empty()),
+        ] {
+            if given {
+                let allowed = "none beside lattice.heights, whose controls move one face along x3";
+                return Err(SceneError::out_of_range(format!("lattice.{field}"), "a value", allowed));
+            }
+        }
+        let points =
+            self.control_points.as_deref().map_or(Ok(HEIGHTS), |points| counts("lattice.control_points", points))?;
+        let degrees = self.degrees(points)?;
+        if let Some((degree, count)) =
+            degrees.into_iter().zip(points).find(|(degree, count)| !(1..*count).contains(degree))
+        {
+            let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
+            return Err(SceneError::out_of_range("lattice.degrees", degree, allowed));
+        }
+        let thickness =
+            *required("lattice.thickness", self.thickness.as_ref(), "the least height of a control point (mm)")?;
+        let section =
+            required("lattice.start", self.start.as_ref(), "a table such as { form = \"plane\", height = 10.0 }")?;
+        let (height, start) = shapes::start(section, size, points, folder)?;
+        let heights = LatticeShape::heights(face, points, degrees, height);
+        let shape = LatticeShape {
+            thickness: Some(thickness),
+            slope: self.slope,
+            volume: self.volume,
+            fairness: self.fairness.unwrap_or_default(),
+            attempts: self.attempts.unwrap_or(heights.attempts),
+            ..heights
+        };
+        match shape.face() {
+            Some(_) => Ok((shape, start)),
+            None => Err(SceneError::out_of_range("lattice.start", height, "a finite mean height > 0 mm")),
+        }
+    }
+
+    /// The degrees along so many control points.
+    fn degrees<const N: usize>(&self, points: [usize; N]) -> Result<[usize; N], SceneError> {
+        match self.degrees.as_deref() {
+            None => Ok(points.map(|count| USUAL_DEGREE.min(count.saturating_sub(1)))),
+            Some(&[degree]) => Ok([degree; N]),
+            Some(degrees) => counts("lattice.degrees", degrees),
+        }
+    }
+
+    /// Displacements of a lattice in space, on a mesh.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for fields that exclude each other and for names that the mesh does not have.
     pub(crate) fn shape(&self, mesh: &Mesh) -> Result<LatticeShape, SceneError> {
+        for (field, given) in [("start", self.start.is_some()), ("thickness", self.thickness.is_some())] {
+            if given {
+                let allowed = "none without lattice.heights, since displacements start at 0";
+                return Err(SceneError::out_of_range(format!("lattice.{field}"), "a value", allowed));
+            }
+        }
+        let allowed = "three numbers of control points";
+        let points = counts(
+            "lattice.control_points",
+            required("lattice.control_points", self.control_points.as_ref(), allowed)?,
+        )?;
+        let allowed = "the least and the largest displacement (mm)";
+        let displacement = *required("lattice.displacement", self.displacement.as_ref(), allowed)?;
         let directions = match (&self.normal, &self.directions) {
             (Some(_), Some(directions)) => {
                 let value = format!("{directions:?}");
@@ -151,9 +254,9 @@ impl LatticeSection {
             component: bound.component - 1,
             range: bound.range,
         };
-        let lattice = LatticeShape::new(self.coordinates(mesh)?, self.control_points, self.displacement);
+        let lattice = LatticeShape::new(self.coordinates(mesh)?, points, displacement);
         Ok(LatticeShape {
-            degrees: self.degrees.unwrap_or(lattice.degrees),
+            degrees: self.degrees(points)?,
             directions,
             region: self.region.clone(),
             fixed: self.fixed.clone(),
@@ -163,8 +266,8 @@ impl LatticeSection {
             node_bounds: self.bounds.iter().map(bound).collect(),
             slope: self.slope,
             volume: self.volume,
-            fairness: self.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
-            attempts: self.attempts,
+            fairness: self.fairness.unwrap_or_default(),
+            attempts: self.attempts.unwrap_or_default(),
             ..lattice
         })
     }
@@ -209,6 +312,11 @@ impl LatticeSection {
         let size = (0..3).map(|axis| most[axis] - least[axis]).fold(0.0, f64::max);
         Ok([least.map(|x| x - MARGIN * size), most.map(|x| x + MARGIN * size)])
     }
+}
+
+/// A number per coordinate.
+fn counts<const N: usize>(field: &str, list: &[usize]) -> Result<[usize; N], SceneError> {
+    list.try_into().map_err(|_| SceneError::out_of_range(field, format!("{list:?}"), format!("{N} entries here")))
 }
 
 /// Which of three coordinates a list counted from 1 names.

@@ -1,56 +1,11 @@
-//! Height surfaces of a scene file: what they are, where they start, what lies opposite to them.
+//! Obstacles of a scene file, and the heights that shapes start from.
 
 use crate::conversion::required;
 use crate::grid_file;
-use crate::{AdmissibleSection, ObstacleSection, SplineName, StartSection, SurfaceSection};
+use crate::{ObstacleSection, StartSection};
 use contact::error::SceneError;
 use contact::scene::CounterSurface;
-use contact::shape::LatticeShape;
 use std::path::Path;
-
-/// Degree of the paper's B-splines.
-const DEFAULT_DEGREE: usize = 3;
-
-/// A height surface over a base of this size, and its controls at the start where they are not all alike.
-pub(crate) fn heights(
-    (surface, admissible): (&SurfaceSection, &AdmissibleSection),
-    size: [f64; 2],
-    folder: &Path,
-) -> Result<(LatticeShape, Option<Vec<f64>>), SceneError> {
-    let (start_height, start) = start(&surface.start, size, surface.control_points, folder)?;
-    let points = surface.control_points;
-    let shape = LatticeShape {
-        thickness: Some(admissible.minimum_height),
-        slope: Some(admissible.slope),
-        volume: Some(admissible.volume),
-        fairness: surface.fairness.as_ref().map_or(0.0, |fairness| fairness.weight),
-        ..LatticeShape::heights(surface.face, points, degrees(surface)?, start_height)
-    };
-    match shape.face() {
-        Some(_) => Ok((shape, start)),
-        None => Err(SceneError::out_of_range("surface.start", start_height, "a finite mean height > 0 mm")),
-    }
-}
-
-/// Degrees along both axes.
-fn degrees(section: &SurfaceSection) -> Result<[usize; 2], SceneError> {
-    let degrees = match (section.spline, section.degree) {
-        (SplineName::Bspline, degree) => [degree.unwrap_or(DEFAULT_DEGREE); 2],
-        (SplineName::Bezier, None) => section.control_points.map(|count| count.saturating_sub(1)),
-        (SplineName::Bezier, Some(degree)) => {
-            let allowed = "no degree with surface.spline = \"bezier\"";
-            return Err(SceneError::out_of_range("surface.degree", degree, allowed));
-        }
-    };
-    let mut both = degrees.into_iter().zip(section.control_points);
-    match both.find(|(degree, count)| !(1..*count).contains(degree)) {
-        None => Ok(degrees),
-        Some((degree, count)) => {
-            let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
-            Err(SceneError::out_of_range("surface.degree", degree, allowed))
-        }
-    }
-}
 
 /// A surface of heights, or in space; `field` stands in messages, `base` is the least corner and the lengths of the
 /// rectangle that a grid covers where its section does not say.
@@ -83,7 +38,7 @@ pub(crate) fn obstacle(
 }
 
 /// Start height of the scene, and the controls where they differ from it.
-fn start(
+pub(crate) fn start(
     section: &StartSection,
     size: [f64; 2],
     counts: [usize; 2],
@@ -104,7 +59,7 @@ fn start(
     };
     let expected = counts[0] * counts[1];
     if controls.len() != expected {
-        return Err(SceneError::WrongCount { what: "surface.start.heights".into(), expected, found: controls.len() });
+        return Err(SceneError::WrongCount { what: "lattice.start.heights".into(), expected, found: controls.len() });
     }
     let mean = controls.iter().sum::<f64>() / expected as f64;
     Ok((mean, Some(controls)))

@@ -1,7 +1,6 @@
-//! Surfaces of a scene file: obstacles, optimized surfaces of blocks, and their bounds.
+//! Surfaces of a scene file: obstacles, and heights at the start.
 
 use contact::scene::Side;
-use contact::shape::ShapedFace;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -95,53 +94,7 @@ pub enum ObstacleSection {
     },
 }
 
-/// The optimized surface of a block.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceSection {
-    /// The face of the block that it shapes.
-    #[serde(default)]
-    pub face: ShapedFace,
-    /// Spline that carries the surface.
-    #[serde(default)]
-    pub spline: SplineName,
-    /// Degree of the B-spline, less than the number of control points; a Bezier surface has none of its own. Default 3.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 39), extend("x-unit" = "1"))]
-    pub degree: Option<usize>,
-    /// Control points along x1, x2.
-    #[serde(default = "six_by_six")]
-    #[schemars(inner(range(min = 2, max = 40)), extend("x-unit" = "1"))]
-    pub control_points: [usize; 2],
-    /// Shape that an optimization starts from.
-    pub start: StartSection,
-    /// A fairer surface than the measure alone asks for. Default none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fairness: Option<FairnessSection>,
-}
-
-/// The bending of the surface as a part of the objective.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FairnessSection {
-    /// The factor of the bending ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² of the control net, a number without unit, which is
-    /// added to the objective.
-    #[schemars(range(min = 0.0, max = 1e60), extend("x-unit" = "unit of the objective"))]
-    pub weight: f64,
-}
-
-/// Which spline.
-// The tag of `SplineKind`, whose degree is a field of its own in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are the meaning")]
-pub enum SplineName {
-    #[default]
-    Bspline,
-    Bezier,
-}
-
-/// The shape at the start. All forms but `controls` are sampled at the places of the control points, which are spread
+/// Heights at the start. All forms but `controls` are sampled at the places of the control points, which are spread
 /// evenly over the base.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
@@ -179,23 +132,4 @@ pub enum StartSection {
         #[schemars(inner(range(max = 1e9)), extend("x-unit" = "mm"))]
         heights: Vec<f64>,
     },
-}
-
-/// Bounds of the control heights.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AdmissibleSection {
-    /// Smallest control height.
-    #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
-    pub minimum_height: f64,
-    /// Largest slope between neighbouring controls.
-    #[schemars(range(max = 1e9), extend("x-unit" = "1", "exclusiveMinimum" = 0.0))]
-    pub slope: f64,
-    /// Smallest and largest volume of the body.
-    #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
-    pub volume: [f64; 2],
-}
-
-fn six_by_six() -> [usize; 2] {
-    [6, 6]
 }

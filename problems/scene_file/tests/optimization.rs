@@ -39,7 +39,7 @@ fn meshes_of_blocks_keep_their_proportions() {
 #[test]
 fn controls_go_from_mesh_to_mesh() {
     let mut file = scene("lug_tet10.toml");
-    file.lattice.as_mut().unwrap().bounds_of_box = None;
+    file.body[0].lattice.as_mut().unwrap().bounds_of_box = None;
     file.limit.clear();
     file.optimizer.max_evaluations = 6;
     file.optimizer.continuation = files(&["lug_hex8.msh", "lug_tet10.msh"]);

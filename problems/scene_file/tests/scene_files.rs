@@ -132,8 +132,8 @@ fn misspelt_fields_suggest_the_nearest_one() {
         ),
         ("radius = 20.0", "raduis = 20.0", "`body[1].block.bottom.raduis` (did you mean `radius`?)"),
         ("traction = [500.0", "tration = [500.0", "`body[1].loads[1].tration` (did you mean `traction`?)"),
-        ("[body.admissible]", "[body.admisible]", "`body[0].admisible` (did you mean `admissible`?)"),
-        ("volume =", "zzz =", "`body[0].admissible.zzz`; allowed: minimum_height, slope, volume"),
+        ("[body.lattice]", "[body.latice]", "`body[0].latice` (did you mean `lattice`?)"),
+        ("volume =", "zzz =", "`body[0].lattice.zzz`; allowed: heights, control_points, degrees"),
     ] {
         assert!(scene.contains(right), "{right}");
         let message = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap_err().to_string();
@@ -169,8 +169,10 @@ fn contradictions_between_fields_are_refused() {
     let scene = text("hertz");
     for (right, wrong, word) in [
         ("subdomains = [2, 2, 2]", "subdomains = [2, 5, 2]", "divisor of the 12 bricks"),
-        ("degree = 3", "degree = 6", "1 ≤ degree ≤ 5"),
-        ("spline = \"bspline\"", "spline = \"bezier\"", "surface.degree"),
+        ("heights = \"top\"", "heights = \"top\"\ndegrees = [6]", "1 ≤ degree ≤ 5"),
+        ("heights = \"top\"", "heights = \"top\"\ndegrees = [3, 3, 3]", "lattice.degrees"),
+        ("heights = \"top\"", "heights = \"top\"\nregion = [\"top\"]", "none beside lattice.heights"),
+        ("thickness = 5.0", "", "lattice.thickness = missing"),
         ("face = \"bottom\"\nheld", "face = \"top\"\nheld", "any face but the contact boundary"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"controls\", heights = [1.0, 2.0] }", "36"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),

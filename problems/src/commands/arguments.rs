@@ -139,7 +139,7 @@ pub struct Variation {
 #[command(next_help_heading = "Shape")]
 #[allow(missing_docs)]
 pub struct Shape {
-    /// Control heights of the shape: a JSON array with an array per control point along x1 [default: surface.start].
+    /// Control heights of the shape: a JSON array with an array per control point along x1 [default: lattice.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
 }
@@ -160,7 +160,7 @@ pub struct HeightError {
 #[command(next_help_heading = "Optimizer")]
 #[allow(missing_docs)]
 pub struct Course {
-    /// Control heights to start the optimization from, a file as with --controls of evaluate [default: surface.start].
+    /// Control heights to start the optimization from, a file as with --controls of evaluate [default: lattice.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
     /// Optimize every start once, with all controls: no attempts, no coarse net, no fairness [default: optimizer.single

@@ -9,14 +9,13 @@ pub type Settings = Result<Vec<Setting>, SceneError>;
 /// How options write the field of a body: as that of the first one.
 const FIRST: &str = "body[0].";
 
-/// Whether an option that stands for a field below a body changes this one: fields of blocks and of surfaces belong to
+/// Whether an option that stands for a field below a body changes this one: fields of blocks and of lattices belong to
 /// bodies that have them, the formulation to all, the elastic constants to the optimized one.
 fn has(body: &BodySection, field: &str) -> bool {
     match field.split_once('.') {
         Some(("block", _)) => body.block.is_some(),
-        Some(("surface", _)) => body.surface.is_some(),
         _ if field.ends_with("formulation") => true,
-        _ => body.surface.is_some() || body.lattice.is_some(),
+        _ => body.lattice.is_some(),
     }
 }
 
@@ -38,7 +37,7 @@ pub fn of_bodies(file: &SceneFile, settings: Vec<Setting>) -> Settings {
         let is_of_one = field.starts_with("material") && !field.ends_with("formulation");
         let allowed = match (places.len(), field.starts_with("block")) {
             (0, true) => "a scene with a block of bricks; pieces of a body divides a mesh".to_owned(),
-            (0, false) => "a scene with an optimized surface of a block".to_owned(),
+            (0, false) => "a scene with an optimized body".to_owned(),
             (2.., _) if is_of_one => {
                 format!("a scene with one optimized body; --set body[0].{field}=... sets that of one body")
             }

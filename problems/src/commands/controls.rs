@@ -30,7 +30,7 @@ pub fn load(
 ) -> Result<Vector, SceneError> {
     let place = match (file, problem.scene.heights()) {
         (Some(_), _) => option.to_owned(),
-        (None, Some(_)) => "surface.start".to_owned(),
+        (None, Some(_)) => "lattice.start".to_owned(),
         (None, None) => format!("the start of the scene, where nothing is displaced ({option} FILE names another)"),
     };
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };

@@ -32,7 +32,7 @@ pub fn differences(
     };
     let same_splines = splines(there) == splines(here);
     let is_silent = |field: &str| {
-        field.ends_with(".file") || plain(field) == "body.mesh" || (same_splines && field.ends_with("surface.degree"))
+        field.ends_with(".file") || plain(field) == "body.mesh" || (same_splines && field.ends_with("lattice.degrees"))
     };
     found.retain(|difference| !is_silent(&difference.field) && counts(&difference.field));
     Ok(found)

@@ -27,7 +27,7 @@ pub struct SceneOption {
 }
 
 const BODIES: &str = "Scene";
-const SURFACE: &str = "Optimized surface";
+const SURFACE: &str = "Optimized shape";
 const SOLVER: &str = "Contact solver";
 const OBJECTIVE: &str = "Objective";
 const OPTIMIZER: &str = "Optimizer";
@@ -68,15 +68,16 @@ const OPTIONS: [SceneOption; 14] = [
         adapt: loaded,
         ..option((BODIES, "load-factor", "F"), &[], "Factor on all loads (negative: reversed) [default: 1]")
     },
-    SceneOption {
-        read: surface,
-        ..option(
-            (SURFACE, "surface", "bspline:DEGREE|bezier"),
-            &["body[0].surface.spline", "body[0].surface.degree"],
-            "Spline of the contact surface",
-        )
-    },
-    option((SURFACE, "control-points", "N1xN2"), &["body[0].surface.control_points"], "Control points along x1 and x2"),
+    option(
+        (SURFACE, "degrees", "P|P1xP2|P1xP2xP3"),
+        &["body[0].lattice.degrees"],
+        "Degrees of the splines; control points less one give Bernstein polynomials (Bézier)",
+    ),
+    option(
+        (SURFACE, "control-points", "N1xN2|N1xN2xN3"),
+        &["body[0].lattice.control_points"],
+        "Control points along x1 and x2 of heights, or along the three coordinates of a lattice",
+    ),
     option((SOLVER, "solver", "NAME"), &["solver.kind"], "Contact solver"),
     option((SOLVER, "preconditioner", "NAME"), &["solver.preconditioner"], "Preconditioner of the dual operator"),
     option(
@@ -183,17 +184,6 @@ fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings 
         }
     }
     Ok(settings)
-}
-
-/// A spline with its degree, which a Bézier surface has not.
-fn surface(fields: &'static [&'static str], text: &str) -> Settings {
-    let [spline, degree] = fields else { return Ok(vec![]) };
-    let (name, degree) = match text.split_once(':') {
-        None if text == "bezier" => (text, Setting::removal(degree)),
-        Some((name @ "bspline", number)) => (name, Setting::read(degree, number)?),
-        _ => return Err(SceneError::out_of_range("--surface", text, "bspline:DEGREE or bezier")),
-    };
-    Ok(vec![Setting::read(spline, name)?, degree])
 }
 
 /// Exponent, wanted pressure and region of the file belong to the file's measure, as its method does.

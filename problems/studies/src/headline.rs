@@ -123,8 +123,8 @@ fn paper_size_table() -> Result<String, Failure> {
     let mut rows = Vec::new();
     for (name, options) in [
         ("clamped cubic B-spline 6×6", &["--max-evaluations", "50"][..]),
-        ("Bézier 6×6", &["--surface", "bezier", "--max-evaluations", "50"]),
-        ("Bézier 8×8", &["--surface", "bezier", "--control-points", "8x8", "--max-evaluations", "60"]),
+        ("Bézier 6×6", &["--degrees", "5", "--max-evaluations", "50"]),
+        ("Bézier 8×8", &["--degrees", "7", "--control-points", "8x8", "--max-evaluations", "60"]),
     ] {
         let report = run(SceneName::Signorini, &[&size, options].concat())?;
         let (options, value) = (format!("`{}`", options.join(" ")), short(number(&report["objective"]), 4));

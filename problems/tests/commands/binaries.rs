@@ -131,9 +131,7 @@ fn controls_travel_through_files() {
 
 #[test]
 fn other_surfaces_and_control_points() {
-    for options in
-        [["--surface", "bezier", "--control-points", "6x6"], ["--surface", "bspline:2", "--control-points", "5x7"]]
-    {
+    for options in [["--degrees", "5", "--control-points", "6x6"], ["--degrees", "2", "--control-points", "5x7"]] {
         let mut arguments = vec!["evaluate", "--mesh", "4", "--json"];
         arguments.extend(options);
         let result = run("signorini3d", &arguments);
@@ -149,9 +147,9 @@ fn bad_options_are_refused_with_status_two() {
         (vec!["evaluate", "--friction", "-0.1"], vec!["friction", "-0.1"]),
         (vec!["evaluate", "--friction", "NaN"], vec!["friction", "NaN"]),
         (vec!["evaluate", "--poisson-ratio", "0.5"], vec!["--poisson-ratio", "0.5", "< 0.5"]),
-        (vec!["evaluate", "--control-points", "3x3"], vec!["degree", "3"]),
+        (vec!["evaluate", "--degrees", "6"], vec!["degree", "6"]),
         (vec!["evaluate", "--controls", "no-such-file.json"], vec!["no-such-file.json"]),
-        (vec!["evaluate", "--surface", "nurbs"], vec!["surface", "bspline"]),
+        (vec!["evaluate", "--degrees", "nurbs"], vec!["degrees", "integer"]),
         (vec!["evaluate", "--start-controls", "x.json"], vec!["--start-controls"]),
         (vec!["--threads", "0"], vec!["--threads"]),
         (vec!["--max-evaluations", "0"], vec!["--max-evaluations"]),

@@ -133,7 +133,7 @@ fn the_lug_states_its_stresses_in_every_case() {
 /// A surface that may bend at a price bends less, and its objective says so.
 #[test]
 fn fairness_is_a_part_of_the_objective() {
-    let fairness = |weight: &str| format!("body[0].surface.fairness={{weight={weight}}}");
+    let fairness = |weight: &str| format!("body[0].lattice.fairness={weight}");
     let hertz = format!("{}/scenes/hertz.toml", env!("CARGO_MANIFEST_DIR"));
     let run = |options: &[&str]| {
         let fixed = [hertz.as_str(), "--single", "--mesh", "4", "--subdomains", "2", "--json"];
@@ -150,7 +150,7 @@ fn fairness_is_a_part_of_the_objective() {
     assert_eq!(fair["termination"]["confirmed"], true, "{}", fair["termination"]);
     assert!(bends(&fair) < 0.9 * bends(&free), "{} {}", bends(&fair), bends(&free));
     let refused = std::process::Command::new(contact3d()).args([&hertz, "--set", &fairness("-1")]).output().unwrap();
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("surface.fairness.weight"));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("lattice.fairness"));
 }
 
 #[test]

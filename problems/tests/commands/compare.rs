@@ -143,11 +143,10 @@ held = ["u1", "u2", "u3"]
 face = "x1-max"
 traction = [0.0, 0.0, -1.0]
 
-[body.surface]
+[body.lattice]
+heights = "top"
 start = { form = "plane", height = 20.0 }
-
-[body.admissible]
-minimum_height = 15.0
+thickness = 15.0
 slope = 1.0
 volume = [1000.0, 9000.0]
 

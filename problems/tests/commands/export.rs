@@ -56,12 +56,8 @@ fn height(scene: &Scene, controls: &[f64], place: [f64; 2]) -> f64 {
 fn the_files_hold_the_surface_and_the_bodies() {
     let cases = [
         (HERTZ, hertz().unwrap(), vec![]),
-        (
-            SIGNORINI,
-            signorini().unwrap().with_shapes(|heights| heights.degrees = [5, 5, 1]),
-            vec!["--surface", "bezier"],
-        ),
-        (HERTZ, hertz().unwrap().with_shapes(|heights| heights.degrees = [1; 3]), vec!["--surface", "bspline:1"]),
+        (SIGNORINI, signorini().unwrap().with_shapes(|heights| heights.degrees = [5, 5, 1]), vec!["--degrees", "5"]),
+        (HERTZ, hertz().unwrap().with_shapes(|heights| heights.degrees = [1; 3]), vec!["--degrees", "1"]),
     ];
     for (program, scene, options) in cases {
         let folder = scratch();
@@ -194,7 +190,7 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
         &["--control-points", "5x5"],
         &[
             "--run",
-            "another surface: body[0].surface.control_points is [6,6] in the run and [5,5] here",
+            "another surface: body[0].lattice.control_points is [6,6] in the run and [5,5] here",
             "scene.toml export",
         ],
     );
@@ -331,7 +327,7 @@ fn a_friction_problem_that_is_not_that_of_the_run_says_so() {
     };
     assert_eq!(differences("other", &["--friction-problem"])[0], "friction is 0.1 in the run and 0.3 here");
     assert_eq!(differences("same", &["--friction-problem", "--friction", "0.1", "--subdomains", "3"]), Value::Null);
-    assert_eq!(differences("surface", &["--step", "--surface", "bspline:3"]), Value::Null);
+    assert_eq!(differences("surface", &["--step", "--degrees", "3"]), Value::Null);
     // The optimum of a coarse-to-fine run belongs to its last mesh.
     let run = folder.path().join("growing");
     kit::json(SIGNORINI, &["--continuation", "2,4", "--max-evaluations", "2", "--json", "--out", text(&run)]);

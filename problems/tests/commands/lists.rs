@@ -20,15 +20,13 @@ name = "base plate"
 material = { young_modulus = 7e4, poisson_ratio = 0.3 }
 supports = [{ face = "bottom", held = ["u1", "u2", "u3"] }]
 block = { size = [10.0, 10.0], bricks = [4, 4, 2] }
-surface = { control_points = [4, 4], start = { form = "plane", height = 5.0 } }
-admissible = { minimum_height = 2.0, slope = 2.0, volume = [400.0, 600.0] }
+lattice = { heights = "top", control_points = [4, 4], start = { form = "plane", height = 5.0 }, thickness = 2.0, slope = 2.0, volume = [400.0, 600.0] }
 
 [[body]]
 name = "punch"
 material = { young_modulus = 2.1e5, poisson_ratio = 0.3 }
 block = { corner = [1.0, 1.0], size = [8.0, 8.0], bricks = [4, 4, 2], top = { form = "plane", height = 10.0 } }
-surface = { face = "bottom", control_points = [4, 4], start = { form = "plane", height = 5.01 } }
-admissible = { minimum_height = 2.0, slope = 2.0, volume = [200.0, 400.0] }
+lattice = { heights = "bottom", control_points = [4, 4], start = { form = "plane", height = 5.01 }, thickness = 2.0, slope = 2.0, volume = [200.0, 400.0] }
 
 [[body]]
 name = "cap"
@@ -148,7 +146,7 @@ fn a_run_of_another_scene_of_lists_is_told_by_the_entry() {
     kit::refused(
         CONTACT,
         &words,
-        &["another surface: body[1].surface.control_points is [5,5] in the run and [4,4] here"],
+        &["another surface: body[1].lattice.control_points is [5,5] in the run and [4,4] here"],
     );
     let words = export(&["--friction-problem", "--set", "body[0].material.young_modulus=1e5", "--json"]);
     let words: Vec<&str> = words.iter().map(String::as_str).collect();

@@ -21,7 +21,7 @@ fn options_out_of_range_are_named_with_value_and_range() {
         ("--load-factor", "nan", "a finite number"),
         ("--load-factor", "1e300", "≤ 1e15 MPa"),
         ("--control-points", "6x400", "≥ 2 and ≤ 40"),
-        ("--surface", "bspline:x", "an integer ≥ 1 and ≤ 39"),
+        ("--degrees", "x", "an integer ≥ 0 and ≤ 39"),
         ("--threads", "2000", "1..=256"),
         ("--threads", "-3", "1..=256"),
         ("--continuation", "x", "an integer ≥ 1 and ≤ 400"),
@@ -113,12 +113,12 @@ fn fields_that_contradict_each_other_are_named_as_in_the_file() {
         (
             "volume = [800.0, 1200.0]",
             "volume = [1200.0, 800.0]",
-            ["admissible.volume = [1200, 800]", "the smallest volume, then"],
+            ["lattice.volume = [1200, 800]", "the smallest volume, then"],
         ),
         (
-            "minimum_height = ",
-            "minimum_height = 40",
-            ["what lies opposite to top of lower at (0, 0) = ", "at least admissible.minimum_height"],
+            "thickness = ",
+            "thickness = 40",
+            ["what lies opposite to top of lower at (0, 0) = ", "at least lattice.thickness"],
         ),
         (
             "top = { form = \"plane\", height = ",
@@ -126,7 +126,7 @@ fn fields_that_contradict_each_other_are_named_as_in_the_file() {
             ["upper.block.top = -", "above the bottom, which has the height"],
         ),
         ("young_modulus = 2.1e5", "young_modulus = 2.1e-300", ["body[1].material.young_modulus = 2.1e-300", "≥ 1e-9"]),
-        ("height = 10.0", "height = 10.5", ["surface.start: controls lie outside", "height of control"]),
+        ("height = 10.0", "height = 10.5", ["lattice.start: controls lie outside", "height of control"]),
     ] {
         assert!(hertz.contains(right), "{right}");
         std::fs::write(&file, hertz.replacen(right, wrong, 1)).unwrap();

@@ -134,7 +134,7 @@ fn a_composite_proof_is_computed_again_from_jacobian_and_pressure_measure() {
 fn the_certificate_of_growing_meshes_is_rechecked_on_the_last_one() {
     let run = Run::new("meshes", &["--continuation", "2,4", "--max-evaluations", "8"]);
     assert_eq!(result(&recheck(&run.0), 0)["agrees"], json!(true));
-    let with_the_default_degree = ["recheck", run.path(), "--surface", "bspline:3"];
+    let with_the_default_degree = ["recheck", run.path(), "--degrees", "3"];
     assert_eq!(signorini3d(&with_the_default_degree).status.code(), Some(0));
 }
 
@@ -159,7 +159,7 @@ fn what_is_no_certificate_of_the_scene_is_refused() {
     refused(
         &["recheck", run.path(), "--mesh", "2", "--control-points", "5x5"],
         1,
-        "body[0].surface.control_points is [6,6]",
+        "body[0].lattice.control_points is [6,6]",
     );
     refused(&["recheck", run.path()], 1, "body[0].block.bricks is [2,2,2] in the run and [12,12,12] here");
     refused(&["recheck", run.path(), "--mesh", "2", "--friction", "0.2"], 1, "friction is 0.3 in the run and 0.2 here");

@@ -94,7 +94,7 @@ fn an_optimization_delivers_page_pictures_and_fields() {
     let result = run(scratch, "signorini3d", &["--mesh", "4", "--max-evaluations", "6", "--out", "run"]);
     let page = check_page(scratch, "run", &optimization());
     for words in
-        ["evaluation limit reached", "aggregate subgradient", "least objective for this total force", "[body.surface]"]
+        ["evaluation limit reached", "aggregate subgradient", "least objective for this total force", "[body.lattice]"]
     {
         assert!(page.contains(words), "{words}");
     }

@@ -93,8 +93,7 @@ name = "base"
 material = { young_modulus = 7e4, poisson_ratio = 0.3 }
 supports = [{ face = "bottom", held = ["u1", "u2", "u3"] }]
 block = { size = [10.0, 10.0], bricks = [4, 4, 2] }
-surface = { control_points = [4, 4], start = { form = "plane", height = 5.0 } }
-admissible = { minimum_height = 2.0, slope = 2.0, volume = [400.0, 600.0] }
+lattice = { heights = "top", control_points = [4, 4], start = { form = "plane", height = 5.0 }, thickness = 2.0, slope = 2.0, volume = [400.0, 600.0] }
 
 [[body]]
 name = "punch"
@@ -115,7 +114,7 @@ frozen = [[0, 0], [0, 0], [0, 1]]
 displacement = [0.0, 0.5]
 slope = 0.5
 volume = [400.0, 500.0]
-fairness = { weight = 1e3 }
+fairness = 1e3
 attempts = true
 
 [[contact]]
@@ -143,7 +142,7 @@ fn lattices_and_several_bodies_have_attempts_and_starts() {
     let starts: Vec<&Value> =
         several["stages"].as_array().unwrap().iter().map(|stage| &stage["objective_start"]).collect();
     assert!(starts[0] != starts[1] && starts[1] != starts[2], "{starts:?}");
-    let plain = run(&["evaluate", "--set", "body[1].lattice.fairness={weight=0.0}"]);
+    let plain = run(&["evaluate", "--set", "body[1].lattice.fairness=0.0"]);
     let fair = run(&["evaluate"]);
     assert_eq!(plain["objective"], fair["objective"], "nothing bends at the start");
 }

@@ -24,12 +24,11 @@ size = [100.0, 100.0]
 bricks = [6, 6, 6]
 subdomains = [2, 2, 2]
 
-[body.surface]
+[body.lattice]
+heights = "top"
 control_points = [6, 6]
 start = { form = "plane", height = 100.0 }
-
-[body.admissible]
-minimum_height = 50.0
+thickness = 50.0
 slope = 5.0
 volume = [5e5, 2e6]
 

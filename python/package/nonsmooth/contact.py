@@ -48,7 +48,7 @@ class Evaluation:
     pressures : ndarray, one entry per contact node
         Contact pressures, MPa.
     gaps : ndarray, one entry per contact node
-        Distance to the counter surface, mm; 0 in contact.
+        Distance to what lies opposite, mm; 0 in contact.
     status : ndarray of int8, one entry per contact node
         `OPEN`, `STICK` or `SLIP`. Without friction, nodes in contact that are free to slide slip.
     areas : ndarray, one entry per contact node
@@ -211,8 +211,8 @@ class Scene:
     ...            "material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
     ...            "loads": [{"face": "bottom", "traction": [0.0, 0.0, 100.0]}],
     ...            "supports": [{"face": "x1-min", "held": ["u1", "u2"]}],
-    ...            "surface": {"control_points": [4, 4], "start": {"form": "plane", "height": 10.0}},
-    ...            "admissible": {"minimum_height": 5.0, "slope": 1.0, "volume": [500.0, 1500.0]}}],
+    ...            "lattice": {"heights": "top", "control_points": [4, 4], "start": {"form": "plane", "height": 10.0},
+    ...                        "thickness": 5.0, "slope": 1.0, "volume": [500.0, 1500.0]}}],
     ...     contact=[{"slave": {"face": "top"}, "obstacle": {"form": "plane", "height": 10.5}}])
     >>> round(scene.evaluate().total_force)  # 100 MPa on 10 mm x 10 mm
     10000

@@ -229,7 +229,7 @@ fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
     for body in &scene.bodies {
         if let Some(shape) = body.shape.as_ref().filter(|own| own.fairness != 0.0) {
             let (weight, allowed) = (shape.fairness, "a finite number ≥ 0 (unit of the objective)");
-            SceneError::require(weight > 0.0 && weight.is_finite(), "surface.fairness.weight", weight, allowed)?;
+            SceneError::require(weight > 0.0 && weight.is_finite(), "lattice.fairness", weight, allowed)?;
             parts.push((first, shape.bending_rows(body.start_block().as_ref())? * weight.sqrt()));
         }
         first += body.control_count();

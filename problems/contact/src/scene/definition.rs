@@ -225,7 +225,7 @@ impl Scene {
         let Geometry::Block(block) = &body.geometry else {
             let in_block = body.shape.as_ref().is_some_and(|shape| shape.coordinates == Coordinates::Block);
             let allowed = "a lattice in space: coordinates along bricks are those of blocks only";
-            return SceneError::require(!in_block, "surface", "the coordinates of a block for a mesh", allowed);
+            return SceneError::require(!in_block, "lattice", "the coordinates of a block for a mesh", allowed);
         };
         block.validate(&format!("{}.block", body.name))?;
         if let Some(heights) = body.heights() {
@@ -246,7 +246,7 @@ impl Scene {
             SceneError::require(height.is_finite(), place(at), height, finite)?;
             if let (ShapedFace::Top, Some(thickness)) = (face, heights.thickness) {
                 let least = block.bottom.height(at[0], at[1]) + thickness;
-                let allowed = format!("at least admissible.minimum_height = {thickness} (mm)");
+                let allowed = format!("at least lattice.thickness = {thickness} (mm)");
                 SceneError::require(height >= least, place(at), height, allowed)?;
             }
         }

@@ -23,8 +23,8 @@ impl Basis {
     /// [`SceneError::OutOfRange`] unless 1 ≤ degree < count.
     pub fn clamped_uniform(degree: usize, count: usize) -> Result<Self, SceneError> {
         let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
-        SceneError::require((1..count).contains(&degree), "surface.degree", degree, allowed)?;
-        Self::clamped(degree, count, "surface.degree")
+        SceneError::require((1..count).contains(&degree), "lattice.degrees", degree, allowed)?;
+        Self::clamped(degree, count, "lattice.degrees")
     }
 
     /// A clamped uniform basis, or the one constant function for one of degree 0; `field` stands in messages.

@@ -40,7 +40,7 @@ impl LatticeShape {
                 for way in self.ways() {
                     let row = difference(way, [point, point + steps[axis]]);
                     if !row.is_empty() && !rows.iter().any(|known| is_image(&row, known)) {
-                        let name = format!("{} (admissible.slope along x{})", sum(first, &row), axis + 1);
+                        let name = format!("{} (lattice.slope along x{})", sum(first, &row), axis + 1);
                         rows.push((name, row, [-bound, bound]));
                     }
                 }
@@ -79,10 +79,10 @@ impl LatticeShape {
             let (words, sign) = if face == ShapedFace::Top { ("under", 1.0) } else { ("above", -1.0) };
             let area = sign * block.size[0] * block.size[1];
             let measure = self.surface()?.integrals().into_iter().map(|value| value * area).enumerate().collect();
-            rows.push((format!("volume {words} the surface (admissible.volume)"), measure, sides));
+            rows.push((format!("volume {words} the surface (lattice.volume)"), measure, sides));
         }
         let own = row.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
-        rows.push(("volume of the cells (admissible.volume)".into(), own, sides));
+        rows.push(("volume of the cells (lattice.volume)".into(), own, sides));
         Ok(rows)
     }
 }

@@ -268,11 +268,11 @@ impl LatticeShape {
         match self.face() {
             Some(_) => {
                 let valid = self.start > 0.0 && self.start.is_finite();
-                SceneError::require(valid, "surface.start", self.start, "a finite mean height > 0 mm")?;
+                SceneError::require(valid, "lattice.start", self.start, "a finite mean height > 0 mm")?;
                 SceneError::require(least < largest, "lattice.range", value, "the smaller number first (mm)")?;
                 let (points, allowed) = (&self.control_points[..2], "at least 2 along x1 and x2");
                 let valid = points.iter().all(|count| *count > 1);
-                SceneError::require(valid, "surface.control_points", format!("{points:?}"), allowed)?;
+                SceneError::require(valid, "lattice.control_points", format!("{points:?}"), allowed)?;
             }
             None => {
                 let valid =
@@ -288,7 +288,7 @@ impl LatticeShape {
         if let Some([least, largest]) = self.volume {
             let value = format!("[{least}, {largest}]");
             let allowed = "the smallest volume, then the largest (mm³)";
-            SceneError::require(least <= largest, "admissible.volume", value, allowed)?;
+            SceneError::require(least <= largest, "lattice.volume", value, allowed)?;
         }
         SceneError::require(self.control_count() > 0, "lattice.directions", "none", "at least one control that moves")
     }

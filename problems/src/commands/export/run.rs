@@ -18,42 +18,29 @@ use scene_file::{Case, SceneFile, read_text};
 use std::path::{Path, PathBuf};
 
 /// The fields of a scene that make its surfaces.
-const SURFACES: [&str; 19] = [
-    "size",
-    "surface.spline",
-    "surface.degree",
-    "surface.control_points",
-    "counter_surface",
-    "upper.top",
-    "body.unit",
-    "lattice",
+const SURFACES: [&str; 8] = [
     "body.name",
+    "body.unit",
     "body.block.corner",
     "body.block.size",
     "body.block.bottom",
     "body.block.top",
-    "body.surface.face",
-    "body.surface.spline",
-    "body.surface.degree",
-    "body.surface.control_points",
     "body.lattice",
     "contact.obstacle",
 ];
-/// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
-const NO_FRICTION_PROBLEM: [&str; 12] = [
-    "name",
-    "mesh",
-    "solver",
-    "optimizer",
-    "output",
-    "surface.start",
-    "objective",
-    "admissible",
-    "body.block.bricks",
-    "body.block.subdomains",
-    "body.surface.start",
-    "body.admissible",
+/// The fields of a lattice on which its surfaces do not depend: start, bounds, course.
+const NO_SURFACE: [&str; 7] = [
+    "body.lattice.start",
+    "body.lattice.thickness",
+    "body.lattice.slope",
+    "body.lattice.volume",
+    "body.lattice.fairness",
+    "body.lattice.attempts",
+    "body.lattice.displacement",
 ];
+/// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
+const NO_FRICTION_PROBLEM: [&str; 7] =
+    ["name", "solver", "optimizer", "output", "objective", "body.block.bricks", "body.block.subdomains"];
 /// Largest report that is read, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
@@ -102,14 +89,16 @@ impl KeptRun {
         }
         let path = root.join(SCENE);
         let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
-        let of_surface = differences(&own, loaded, |field| is_below(field, &SURFACES))?;
+        let of_surface =
+            differences(&own, loaded, |field| is_below(field, &SURFACES) && !is_below(field, &NO_SURFACE))?;
         let other_files = || other_files(&own.case.scene, &loaded.case.scene);
         if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(other_files) {
             let [scene, run] = [&path, folder].map(|path| quoted(path.display().to_string()));
             let hint = format!("take its own scene: contact3d {scene} export --run {run} --out DIR2");
             return refused(format!("is a run of another surface: {difference}; {hint}"));
         }
-        let mut differences = differences(&own, loaded, |field| !is_below(field, &NO_FRICTION_PROBLEM))?;
+        let counts = |field: &str| !is_below(field, &NO_FRICTION_PROBLEM) && !is_below(field, &NO_SURFACE);
+        let mut differences = differences(&own, loaded, counts)?;
         let own = own.case;
         differences.extend(other_bricks(&last(&own, root, folder).scene, &loaded.case.scene));
         let (kind, parts) = if root == folder {

@@ -9,7 +9,7 @@ use crate::commands::run_kind::{RUN, RunKind};
 use contact::error::SceneError;
 use nonsmooth::{Journal, JournalError, Journaled, NonsmoothObjective, Vector};
 use scene_file::optimization::stages;
-use scene_file::{OptimizerSection, OutputSection, SceneFile, StartSection};
+use scene_file::{OptimizerSection, OutputSection, SceneFile};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -47,8 +47,8 @@ impl Identity {
         let mut scene = loaded.file.clone();
         let mut contents = BTreeMap::from([(START.to_owned(), hash(json(initial_controls)?.as_bytes()))]);
         // The start is known by its controls.
-        for surface in scene.body.iter_mut().filter_map(|body| body.surface.as_mut()) {
-            surface.start = StartSection::Controls { heights: vec![] };
+        for lattice in scene.body.iter_mut().filter_map(|body| body.lattice.as_mut()) {
+            lattice.start = None;
         }
         for (name, file) in scene.files_mut() {
             contents.insert(name.to_owned(), hash(&content(loaded, file)?));

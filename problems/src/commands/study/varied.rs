@@ -60,7 +60,7 @@ impl Varied {
     /// Whether rows that differ in it have different shapes, though they are not optimized.
     pub fn changes_shapes(&self) -> bool {
         let field = self.field();
-        field.starts_with("surface") || field.contains("].surface") || self.name == HEIGHT_ERROR
+        field.contains("lattice.") || self.name == HEIGHT_ERROR
     }
 
     /// Its values, as they are typed.
@@ -140,13 +140,13 @@ mod tests {
         assert_eq!(friction.values(), ["0", "0.2", "0.4", "0.6", "0.8"]);
         let mesh = Varied::parse("--mesh=4:12:3").expect("numbers of bricks");
         assert_eq!(mesh.values(), ["4", "8", "12"]);
-        let surface = Varied::parse("surface=bspline:2,bezier").expect("splines");
-        let rows = combinations(&[surface, Varied::parse("friction=0,0.3").expect("numbers")]);
+        let degrees = Varied::parse("degrees=2,3").expect("degrees");
+        let rows = combinations(&[degrees, Varied::parse("friction=0,0.3").expect("numbers")]);
         let expected = [
-            ["--surface=bspline:2", "--friction=0"],
-            ["--surface=bspline:2", "--friction=0.3"],
-            ["--surface=bezier", "--friction=0"],
-            ["--surface=bezier", "--friction=0.3"],
+            ["--degrees=2", "--friction=0"],
+            ["--degrees=2", "--friction=0.3"],
+            ["--degrees=3", "--friction=0"],
+            ["--degrees=3", "--friction=0.3"],
         ];
         assert_eq!(rows, expected);
     }

@@ -69,37 +69,45 @@ pub fn scene(seed: u64, index: usize) -> (Family, String) {
     let decades = if family == Family::FewNodes { between(random, 3.0, 7.0) } else { between(random, -1.0, 7.0) };
     let force = young * mean * range / 10_f64.powf(decades);
     let sizes = Sizes { base: [lengths[0], lengths[1]], height: lengths[2], range, young, force, friction };
-    let mut text = format!(
-        "name = \"random {seed} {index}\"\nsize = [{:e}, {:e}]\nfriction = {friction:e}\n\n[contact]\nnormal = \"x3\"\n\n\
-         [mesh]\nbricks = {mesh:?}\n\n",
-        lengths[0], lengths[1]
-    );
-    bodies(&mut text, family, &sizes, random);
-    obstacle(&mut text, family, &sizes, random);
-    start(&mut text, &sizes, random);
-    (family, text)
+    let block = format!("[body.block]\nsize = [{:e}, {:e}]\nbricks = {mesh:?}\n", lengths[0], lengths[1]);
+    let [lower, upper] = bodies(family, &sizes, random);
+    let (obstacle, shape) = (obstacle(family, &sizes, random), shape(&sizes, random));
+    let head = format!("name = \"random {seed} {index}\"\nfriction = {friction:e}\n\n");
+    let lower = format!("[[body]]\nname = \"lower\"\n\n{block}\n{lower}{shape}");
+    let rest = if upper.is_empty() {
+        format!("[[contact]]\nslave = {{ face = \"top\" }}\nnormal = \"x3\"\n\n[contact.obstacle]\n{obstacle}")
+    } else {
+        let top = format!("top = {{ form = \"plane\", height = {:e} }}\n", 2.0 * sizes.height + 2.0 * sizes.range);
+        format!(
+            "[[body]]\nname = \"upper\"\n\n{block}{top}\n[body.block.bottom]\n{obstacle}\n{upper}[[contact]]\n\
+             slave = {{ body = \"lower\", face = \"top\" }}\nmaster = {{ body = \"upper\", face = \"bottom\" }}\n\
+             normal = \"x3\"\n"
+        )
+    };
+    (family, head + &lower + &rest)
 }
 
-fn material(text: &mut String, body: &str, young: f64, random: &mut Random) {
+fn material(text: &mut String, young: f64, random: &mut Random) {
     let ratio = if random.below(6) == 0 { 0.5 - log_uniform(random, 1e-4, 0.1) } else { between(random, -0.9, 0.45) };
     let formulation = if random.below(3) == 0 { "mean-dilatation" } else { "standard" };
     let _ = write!(
         text,
-        "[{body}.material]\nyoung_modulus = {young:e}\npoisson_ratio = {ratio:e}\nformulation = \"{formulation}\"\n\n"
+        "[body.material]\nyoung_modulus = {young:e}\npoisson_ratio = {ratio:e}\nformulation = \"{formulation}\"\n\n"
     );
 }
 
-fn support(text: &mut String, body: &str, face: &str, held: &[&str]) {
-    let _ = write!(text, "[[{body}.supports]]\nface = \"{face}\"\nheld = {held:?}\n\n");
+fn support(text: &mut String, face: &str, held: &[&str]) {
+    let _ = write!(text, "[[body.supports]]\nface = \"{face}\"\nheld = {held:?}\n\n");
 }
 
-fn load(text: &mut String, body: &str, face: &str, traction: [f64; 3]) {
+fn load(text: &mut String, face: &str, traction: [f64; 3]) {
     let [a, b, c] = traction;
-    let _ = write!(text, "[[{body}.loads]]\nface = \"{face}\"\ntraction = [{a:e}, {b:e}, {c:e}]\n\n");
+    let _ = write!(text, "[[body.loads]]\nface = \"{face}\"\ntraction = [{a:e}, {b:e}, {c:e}]\n\n");
 }
 
-/// Materials, supports and loads.
-fn bodies(text: &mut String, family: Family, sizes: &Sizes, random: &mut Random) {
+/// Materials, supports and loads of the lower and of the upper body; nothing of an upper one that is not there.
+fn bodies(family: Family, sizes: &Sizes, random: &mut Random) -> [String; 2] {
+    let (mut lower, mut upper) = (String::new(), String::new());
     let pressure = sizes.force / (sizes.base[0] * sizes.base[1]);
     let side = sizes.force / (sizes.base[1] * sizes.height);
     // Without friction, a tangential load needs a support; with it, some loads are beyond the cone.
@@ -109,80 +117,72 @@ fn bodies(text: &mut String, family: Family, sizes: &Sizes, random: &mut Random)
     };
     match family {
         Family::Held => {
-            material(text, "lower", sizes.young, random);
-            support(text, "lower", "bottom", &["u1", "u2", "u3"]);
+            material(&mut lower, sizes.young, random);
+            support(&mut lower, "bottom", &["u1", "u2", "u3"]);
             let shares = [tangential(random, true), tangential(random, true)];
-            load(text, "lower", "x1-max", [side * shares[0], side * shares[1], side]);
+            load(&mut lower, "x1-max", [side * shares[0], side * shares[1], side]);
         }
         Family::FreeBody | Family::FewNodes => {
-            material(text, "lower", sizes.young, random);
+            material(&mut lower, sizes.young, random);
             match random.below(4) {
-                0 => support(text, "lower", "x1-min", &["u1"]),
-                1 => support(text, "lower", "x1-min", &["u1", "u2"]),
+                0 => support(&mut lower, "x1-min", &["u1"]),
+                1 => support(&mut lower, "x1-min", &["u1", "u2"]),
                 _ => {}
             }
             let shares = [tangential(random, false), tangential(random, false)];
-            load(text, "lower", "bottom", [pressure * shares[0], pressure * shares[1], pressure]);
+            load(&mut lower, "bottom", [pressure * shares[0], pressure * shares[1], pressure]);
         }
         Family::FreeUpper => {
-            material(text, "lower", sizes.young, random);
-            support(text, "lower", "bottom", &["u1", "u2", "u3"]);
-            let _ = write!(text, "[upper]\ntop = {:e}\n\n", 2.0 * sizes.height + 2.0 * sizes.range);
-            material(text, "upper", sizes.young * log_uniform(random, 0.01, 100.0), random);
+            material(&mut lower, sizes.young, random);
+            support(&mut lower, "bottom", &["u1", "u2", "u3"]);
+            material(&mut upper, sizes.young * log_uniform(random, 0.01, 100.0), random);
             let shares = [tangential(random, false), tangential(random, false)];
-            load(text, "upper", "top", [pressure * shares[0], pressure * shares[1], -pressure]);
+            load(&mut upper, "top", [pressure * shares[0], pressure * shares[1], -pressure]);
         }
         Family::Tilting => {
-            material(text, "lower", sizes.young, random);
+            material(&mut lower, sizes.young, random);
             match random.below(3) {
-                0 => support(text, "lower", "x1-min", &["u1"]),
-                1 => support(text, "lower", "x2-min", &["u2", "u1"]),
+                0 => support(&mut lower, "x1-min", &["u1"]),
+                1 => support(&mut lower, "x2-min", &["u2", "u1"]),
                 _ => {}
             }
-            load(text, "lower", "bottom", [0.0, 0.0, pressure]);
-            load(text, "lower", "x1-max", [0.0, 0.0, side * 0.6 * random.signed()]);
+            load(&mut lower, "bottom", [0.0, 0.0, pressure]);
+            load(&mut lower, "x1-max", [0.0, 0.0, side * 0.6 * random.signed()]);
         }
     }
+    [lower, upper]
 }
 
-/// What the lower body meets, or the lower surface of the upper body.
-fn obstacle(text: &mut String, family: Family, sizes: &Sizes, random: &mut Random) {
+/// What the lower body meets, or the bottom of the upper body.
+fn obstacle(family: Family, sizes: &Sizes, random: &mut Random) -> String {
     let (top, range) = (sizes.height, sizes.range);
     let [a, b] = sizes.base;
     let gap = if random.below(2) == 0 { 0.0 } else { range * random.unit() };
     let (kind, height) = (random.below(4), top + gap);
-    let _ = match (family, kind) {
+    match (family, kind) {
         (_, 0) => {
             // A sphere over the corner (0, 0) that varies by the range over the base and covers it.
             let radius = ((a * a + b * b) / (2.0 * range)).max(1.01 * a.hypot(b));
-            write!(text, "[counter_surface]\nform = \"sphere\"\napex = {height:e}\nradius = {radius:e}\n\n")
+            format!("form = \"sphere\"\napex = {height:e}\nradius = {radius:e}\n")
         }
-        (family, 1) if family != Family::FewNodes => {
-            write!(text, "[counter_surface]\nform = \"plane\"\nheight = {height:e}\n\n")
-        }
+        (family, 1) if family != Family::FewNodes => format!("form = \"plane\"\nheight = {height:e}\n"),
         _ => {
             // One hump or several: the lowest place is at ¾ of the period along x₁ and at ½ along x₂.
             let period = a * between(random, 0.3, 0.7) / 0.75 / if kind == 2 { 1.0 } else { between(random, 1.0, 2.0) };
-            write!(
-                text,
-                "[counter_surface]\nform = \"waves\"\nbase = {:e}\nfirst = {:e}\nsecond = {:e}\nperiod = {period:e}\n\n",
-                height + range,
-                0.5 * range,
-                0.5 * range
-            )
+            let (base, size) = (height + range, 0.5 * range);
+            format!("form = \"waves\"\nbase = {base:e}\nfirst = {size:e}\nsecond = {size:e}\nperiod = {period:e}\n")
         }
-    };
+    }
 }
 
 /// A rippled start below the obstacle, and a wide admissible set.
-fn start(text: &mut String, sizes: &Sizes, random: &mut Random) {
+fn shape(sizes: &Sizes, random: &mut Random) -> String {
     let ripple = if random.below(2) == 0 { 0.0 } else { 0.5 * sizes.range };
     let heights: Vec<String> = (0..16).map(|_| format!("{:e}", sizes.height - ripple * random.unit())).collect();
-    let _ = write!(
-        text,
-        "[surface]\ncontrol_points = [4, 4]\n\n[surface.start]\nform = \"controls\"\nheights = [{}]\n\n[admissible]\n\
-         minimum_height = {:e}\nslope = 1e9\nvolume = [0.0, 1e27]\n",
-        heights.join(", "),
-        0.1 * sizes.height
-    );
+    format!(
+        "[body.lattice]\nheights = \"top\"\ncontrol_points = [4, 4]\nthickness = {:e}\nslope = 1e9\n\
+         volume = [0.0, 1e27]\nstart = {{ form = \"controls\", heights = [{}] }}\n\n",
+        0.1 * sizes.height,
+        heights.join(", ")
+    )
 }
