@@ -93,7 +93,7 @@ fn case(file: &SceneFile, index: usize, folder: &Path, scene: &Scene) -> Result<
         for (body, model) in changed.bodies.iter_mut().zip(&scene.bodies) {
             if let (Some(ShapeScene::Lattice(own)), Some(ShapeScene::Lattice(model))) = (&mut body.shape, &model.shape)
             {
-                own.coordinates = model.coordinates.clone();
+                own.coordinates = model.coordinates;
             }
         }
     }
