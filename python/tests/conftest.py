@@ -39,7 +39,9 @@ def collection():
 @pytest.fixture(scope="session")
 def contact3d():
     """The program of the repository, built if it is not there."""
-    build = ["cargo", "build", "--locked", "-p", "problems", "--bin", "contact3d", "--message-format=json"]
+    # The features of the wheel, so that nothing is built twice.
+    packages = ["-p", "problems", "-p", "nonsmooth-python", "--features", "nonsmooth-python/collection"]
+    build = ["cargo", "build", "--locked", *packages, "--bin", "contact3d", "--message-format=json"]
     printed = subprocess.run(build, cwd=Path(__file__).parents[2], capture_output=True, check=True, text=True).stdout
     return [json.loads(line)["executable"] for line in printed.splitlines() if '"executable":"' in line][-1]
 

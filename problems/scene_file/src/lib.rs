@@ -99,19 +99,6 @@ pub struct SceneFile {
     pub output: OutputSection,
 }
 
-/// Whether a name is one of the copies of the files of a scene.
-pub fn is_copy(name: &str) -> bool {
-    FILES.iter().any(|copy| {
-        let Some((stem, end)) = copy.rsplit_once('.') else { return false };
-        let inner =
-            name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(end)).and_then(|rest| rest.strip_suffix('.'));
-        let digits = |text: &str| text.trim_start_matches("-bottom").trim_start_matches("-top").to_owned();
-        inner.is_some_and(|rest| {
-            rest.is_empty() || digits(rest).strip_prefix('-').is_some_and(|n| n.parse::<usize>().is_ok())
-        })
-    })
-}
-
 /// The name of the copy of a file of one of several bodies or contacts, such as `body-1.msh`; that of the only one has
 /// no number.
 fn numbered(name: &str, index: usize, count: usize, face: &str) -> String {

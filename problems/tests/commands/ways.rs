@@ -78,8 +78,8 @@ fn meshes_of_files_grow_and_resume() {
     assert!(folder.join("continuation-1.msh").exists() && folder.join("mesh_2/journal.jsonl").exists());
     let resume = ["--resume", text(&folder), "--max-evaluations", "4", "--no-checks", "--json"];
     assert_eq!(found(&kit::json(CONTACT, &resume)), found(&whole));
-    let [last, exported] = ["mesh_2", "exported"].map(|name| folder.join(name));
-    kit::json(CONTACT, &[lug, "export", "--run", text(&last), "--out", text(&exported), "--json"]);
+    let [scene, last, exported] = ["scene.toml", "mesh_2", "exported"].map(|name| folder.join(name));
+    kit::json(CONTACT, &[text(&scene), "export", "--run", text(&last), "--out", text(&exported), "--json"]);
     kit::refused(CONTACT, &[lug, "--continuation", "4,none.msh"], &["--continuation", "bricks alone"]);
 }
 

@@ -47,11 +47,6 @@ impl Scene {
         self.bodies.iter().filter_map(|body| body.shape.as_ref())
     }
 
-    /// Whether all bodies are blocks.
-    pub fn is_of_blocks(&self) -> bool {
-        self.bodies.iter().all(|body| body.block().is_some())
-    }
-
     /// The scene with changed blocks; bodies of meshes stay as they are.
     #[must_use]
     pub fn with_blocks(mut self, change: impl Fn(&mut Block)) -> Self {
