@@ -158,17 +158,6 @@ impl Canvas {
         );
     }
 
-    /// What is drawn by `draw` is seen only inside a rectangle; `name` must be unique in the drawing.
-    pub fn clipped(&mut self, name: &str, [x, y]: Place, [width, height]: [f64; 2], draw: impl FnOnce(&mut Self)) {
-        let _ = writeln!(
-            self.body,
-            "<clipPath id=\"{name}\"><rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>\
-             </clipPath>\n<g clip-path=\"url(#{name})\">"
-        );
-        draw(self);
-        self.body += "</g>\n";
-    }
-
     /// Says that a rectangle is a part that may stand alone; it is cut at the sides of the drawing.
     pub fn part(&mut self, [left, top]: Place, [right, foot]: Place) {
         let [left, top] = [left, top].map(|side| side.max(0.0).floor() as u32);

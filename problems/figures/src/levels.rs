@@ -41,11 +41,6 @@ impl ColourScale {
         Self { axis, levels }
     }
 
-    /// Shares of the scale at which the colour changes.
-    pub fn levels(&self) -> &[f64] {
-        &self.levels
-    }
-
     /// Colour of a number of steps from the one that begins at level k − 1.
     fn colour(&self, step: usize, count: usize) -> String {
         let end =
@@ -206,7 +201,7 @@ mod tests {
     fn a_scale_covers_all_values_and_begins_at_zero_where_that_is_near() {
         let scale = ColourScale::new("p", "MPa", [3.0, 14_809.0]);
         assert_eq!(scale.axis.ends(), [0.0, 14_809.0]);
-        assert_eq!((scale.step(0.0), scale.step(1.0)), (0, scale.levels().len()));
+        assert_eq!((scale.step(0.0), scale.step(1.0)), (0, scale.levels.len()));
         assert_eq!(ColourScale::new("h", "mm", [45.0, 50.0]).axis.ends(), [45.0, 50.0]);
     }
 }

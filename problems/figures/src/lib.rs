@@ -1,8 +1,8 @@
 //! Scientific figures as SVG, and HTML pages that hold them: without other programs, system libraries or system fonts.
 //!
 //! ```text
-//! numbers ─┬─ Map, Classes, Lines, Landscape, Convergence ─── Figure ─┬─ svg
-//!          │                                                          └─ png (feature `png`: resvg, fonts of its own)
+//! numbers ─┬─ Map, Classes, Lines, Convergence ─── Figure ─┬─ svg
+//!          │                                             └─ png (feature `png`: resvg, fonts of its own)
 //!          └─ Space ─ SpaceView: a view in three dimensions, which the script of a page draws (assets/viewer.js)
 //! scale (ticks), chart (axes), panel_layout (panels), marks (legends), plan (meshes in a plane), levels (areas),
 //! view (direction of view), regions (borders of areas), canvas (SVG text), packing (numbers of a SpaceView)
@@ -22,7 +22,6 @@ mod convergence;
 mod error;
 mod figure;
 mod grids;
-mod landscape;
 mod levels;
 mod lines;
 mod map;
@@ -43,7 +42,6 @@ pub use convergence::{Convergence, Step};
 pub use error::FigureError;
 pub use figure::Figure;
 pub use grids::{box_faces, grid_faces};
-pub use landscape::{Landscape, Visit};
 pub use lines::{Curve, LinePanel, Lines};
 pub use map::{ColourScales, Map, MapPanel};
 pub use scale::{nice_below, number};

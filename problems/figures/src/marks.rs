@@ -21,7 +21,6 @@ pub(super) enum Sign<'a> {
     Shape(&'a str, usize),
     /// A square of a colour.
     Swatch(&'a str),
-    Cross,
     Line(Stroke<'a>),
 }
 
@@ -57,18 +56,11 @@ pub(super) fn legend(canvas: &mut Canvas, [x, mut y]: Place, rows: &[(Sign, Stri
             Sign::Mark(kind, index) => mark(canvas, &format!("legend {kind}"), *index, mark_colour(*index), middle, ""),
             Sign::Shape(kind, index) => mark(canvas, &format!("legend {kind}"), *index, INK, middle, ""),
             Sign::Swatch(colour) => canvas.rectangle([middle[0] - 5.0, y - 5.0], [10.0, 10.0], colour),
-            Sign::Cross => cross(canvas, middle),
             Sign::Line(stroke) => canvas.line(&[[x, y], [x + LINE, y]], *stroke),
         }
         canvas.text([x + INDENT, y + 0.34 * LABEL], LABEL, name);
         y += ROW;
     }
-}
-
-/// The mark of a step; shape and colour are those of its kind.
-pub(super) fn step(canvas: &mut Canvas, kinds: &[(&str, usize)], kind: &str, at: Place) {
-    let index = number(kinds, kind);
-    mark(canvas, kind, index, mark_colour(index), at, "");
 }
 
 /// The number of a kind.
@@ -101,12 +93,4 @@ pub(super) fn mark(canvas: &mut Canvas, class: &str, index: usize, colour: &str,
 pub(super) fn point(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
     let colour = curve(index);
     canvas.raw(&format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\" fill=\"{colour}\"/>\n"));
-}
-
-/// A cross seen on every colour.
-pub(super) fn cross(canvas: &mut Canvas, [x, y]: Place) {
-    for (colour, width) in [("#ffffff", 4.0), ("#000000", 1.6)] {
-        canvas.line(&[[x - 6.0, y - 6.0], [x + 6.0, y + 6.0]], Stroke::solid(colour, width));
-        canvas.line(&[[x - 6.0, y + 6.0], [x + 6.0, y - 6.0]], Stroke::solid(colour, width));
-    }
 }

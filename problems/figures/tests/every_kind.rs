@@ -2,8 +2,7 @@
 //! superscripts.
 
 use figures::{
-    ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, Landscape, LinePanel, Lines, Map, MapPanel, Step,
-    Visit, grid_faces,
+    ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, LinePanel, Lines, Map, MapPanel, Step, grid_faces,
 };
 
 fn title() -> String {
@@ -14,7 +13,7 @@ fn axes() -> [String; 2] {
     ["x₁ < 1".into(), "x₂ (mm^{2})".into()]
 }
 
-fn plots() -> [Figure; 2] {
+fn plots() -> [Figure; 1] {
     let step =
         |kind: &str, value: f64| Step { kind: kind.into(), origin: "<cuts>".into(), value: Some(value), best: value };
     let convergence = Convergence {
@@ -26,21 +25,7 @@ fn plots() -> [Figure; 2] {
         course: "best so far".into(),
         reference: Some(("bound & floor".into(), 1e13)),
     };
-    let visit = |kind: &str, place| Visit { kind: kind.into(), place };
-    let landscape = Landscape {
-        name: "landscape".into(),
-        title: title(),
-        quantity: "q".into(),
-        axes: axes(),
-        counts: [3, 2],
-        origin: [0.0; 2],
-        size: [2.0, 1.0],
-        values: vec![0.0, 1.0, 2.0, 3.0, 5.0, 8.0],
-        lines: Some(("kink".into(), vec![[[1.0, 0.0], [1.0, 1.0]]])),
-        path: vec![visit("start", [0.0, 1.0]), visit("null", [2.0, 0.5])],
-        goal: Some(("minimiser".into(), [0.0, 0.0])),
-    };
-    [convergence.figure(), landscape.figure()].map(|figure| figure.expect("numbers"))
+    [convergence.figure().expect("numbers")]
 }
 
 /// n₁ × n₂ points of a rectangle, index i·n₂ + j, that begins at a place on the diagonal.

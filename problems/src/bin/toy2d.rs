@@ -1,8 +1,7 @@
 //! Minimises the 2D toy with the bundle-trust engine and compares with the known minimiser.
 
 use clap::Parser;
-use figures::{Landscape, Visit};
-use nonsmooth::IterationRecord;
+use figures::{ColourScales, Map, MapPanel, grid_faces};
 use problems::commands::{Failure, Folder, arguments, finish, printed_with_files};
 use problems::toy;
 use std::path::PathBuf;
@@ -25,7 +24,7 @@ struct Arguments {
     /// Print one JSON object instead of the page
     #[arg(long)]
     json: bool,
-    /// Folder for a picture of the landscape with the points of the first run
+    /// Folder for a picture of the landscape
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
@@ -50,8 +49,7 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     let text =
         if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
     let text = text.trim_end().to_owned() + "\n";
-    let draw =
-        |folder: &Folder| starts.first().map_or(Ok(()), |start| picture(folder, *start, arguments.cells as usize));
+    let draw = |folder: &Folder| picture(folder, arguments.cells as usize);
     let text = printed_with_files(text, arguments.json, folder.as_ref(), draw)?;
     if study.all_found() {
         return Ok(text);
@@ -61,24 +59,20 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     Err(Failure::Incomplete { text, reason, status: 1 })
 }
 
-/// The landscape with its kinks and the points of a run.
-fn picture(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failure> {
-    let trace = toy::trace(start)?;
-    let visit = |(record, &place): (&IterationRecord, &[f64; 2])| Visit { kind: record.kind.to_string(), place };
-    let ground = Landscape {
+/// Θ over the controls.
+fn picture(folder: &Folder, cells: usize) -> Result<(), Failure> {
+    let (points, values) = toy::landscape(cells)?.into_iter().unzip();
+    let map = Map {
         name: "landscape".into(),
-        title: "Two nodes on a shaped support with friction: Θ and the points of a run".into(),
+        title: "Two nodes on a shaped support with friction: Θ over its two controls".into(),
         quantity: "Θ".into(),
+        unit: String::new(),
         axes: ["control 1".into(), "control 2".into()],
-        counts: [cells + 1; 2],
-        origin: [toy::LOWER; 2],
-        size: [toy::UPPER - toy::LOWER; 2],
-        values: toy::landscape(cells)?.into_iter().map(|(_, value)| value).collect(),
-        lines: Some(("kink of a node".into(), toy::kink_lines())),
-        path: trace.report.history.iter().zip(&trace.points).map(visit).collect(),
-        goal: Some(("minimiser".into(), toy::MINIMISER)),
+        scales: ColourScales::Common,
+        contours: true,
+        panels: vec![MapPanel { caption: "Θ".into(), points, faces: grid_faces([cells + 1; 2]), values }],
     };
-    folder.draw(&ground.figure().map_err(Failure::computation)?)
+    folder.draw(&map.figure().map_err(Failure::computation)?)
 }
 
 fn parse_start(text: &str) -> Result<[f64; 2], String> {

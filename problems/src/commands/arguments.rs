@@ -1,6 +1,5 @@
 //! The command and the options of the contact binaries.
 
-use crate::commands::ascii::shown;
 use crate::commands::export::options::ExportOptions;
 use crate::commands::failure::{Failure, refused};
 use crate::commands::run_kind::RunKind;
@@ -324,7 +323,7 @@ impl Arguments {
 
     /// The result of a command for stdout, in the form that is asked for.
     pub fn printed(&self, text: String, json: String) -> String {
-        if self.json { json } else { shown(&text).into_owned() }
+        if self.json { json } else { text }
     }
 
     /// Refuses options that do not go together.

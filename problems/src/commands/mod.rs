@@ -8,7 +8,6 @@
 //! for a shell.
 
 mod arguments;
-mod ascii;
 mod body_fields;
 mod case_facts;
 mod command_line;

@@ -1,6 +1,5 @@
 //! What a command prints: never lost without a word.
 
-use crate::commands::ascii::shown;
 use crate::commands::failure::Failure;
 use crate::commands::file_limit::let_large_writes_fail;
 use clap::{Error, Parser};
@@ -56,7 +55,7 @@ pub fn print(text: &str) -> io::Result<()> {
 
 /// A line on stderr. Where nobody listens there is nothing to be done.
 pub fn notice(line: &str) {
-    let _ = writeln!(io::stderr(), "{}", shown(line));
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// Whether stdout was closed when the program began. What starts a program then opens /dev/null in its place, for
@@ -103,7 +102,7 @@ pub fn left(error: &Error) -> ExitCode {
 fn said(error: &Error) -> u8 {
     // What the parser prints itself is not flushed before the end.
     let text = error.render().to_string();
-    let printed = if error.use_stderr() { write!(io::stderr(), "{}", shown(&text)) } else { print(&shown(&text)) };
+    let printed = if error.use_stderr() { write!(io::stderr(), "{text}") } else { print(&text) };
     let status = if error.exit_code() == 0 { 0 } else { BAD_INPUT };
     match printed {
         Ok(()) => status,

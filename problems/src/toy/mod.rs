@@ -30,14 +30,12 @@ mod cost;
 mod node;
 mod solver;
 mod study;
-mod trace;
 
 pub use clarke::{KINK_WIDTH, clarke_vertices};
 pub use cost::ToyCost;
 pub use node::{Kink, Node, NodeData, NodeStatus, NodeValues};
 pub use solver::{NodeState, SURFACE, ToyContact, ToyState};
-pub use study::{SUCCESS, ToyRun, ToyStudy, random_starts, run_study};
-pub use trace::{ToyTrace, kink_lines, landscape, trace};
+pub use study::{SUCCESS, ToyRun, ToyStudy, landscape, random_starts, run_study};
 
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 

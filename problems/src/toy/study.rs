@@ -1,10 +1,15 @@
 //! Minimises the toy from many starts and says how far each run ended from the known minimiser.
 
-use super::{Kink, LOWER, MINIMUM, UPPER, minimiser, toy_objective, trace};
+use super::{Kink, LOWER, MINIMUM, UPPER, admissible_set, minimiser, toy_objective};
 use nonsmooth::verify::seeded_direction;
-use nonsmooth::{OptimizeError, Termination, Vector};
+use nonsmooth::{
+    Accuracy, BundleTrust, BundleTrustConfig, Cost, OptimizeError, OracleError, StateSolver, Termination, Vector,
+};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+
+/// Tolerance of the runs; sharp growth turns it into a distance of about five times this.
+const TOLERANCE: f64 = 1e-10;
 
 /// Distance |α − α*| up to which a run has found the minimiser, mm.
 pub const SUCCESS: f64 = 1e-8;
@@ -68,7 +73,9 @@ pub fn run_study(starts: &[[f64; 2]]) -> Result<Option<ToyStudy>, OptimizeError>
 }
 
 fn run(start: &[f64; 2]) -> Result<ToyRun, OptimizeError> {
-    let report = trace(*start)?.report;
+    let config = BundleTrustConfig { tolerance: TOLERANCE, ..BundleTrustConfig::default() };
+    let mut method = BundleTrust::new(config)?.constraints(admissible_set());
+    let report = method.minimize(&toy_objective(), Vector::from_row_slice(start))?;
     Ok(ToyRun {
         start: *start,
         solution: [report.solution[0], report.solution[1]],
@@ -77,6 +84,28 @@ fn run(start: &[f64; 2]) -> Result<ToyRun, OptimizeError> {
         evaluations: report.counts.evaluations,
         termination: report.termination,
     })
+}
+
+/// Controls on a uniform grid of the admissible box, `cells` + 1 per axis, with Θ; the second control runs fastest.
+///
+/// # Errors
+/// An [`OracleError`] without cells.
+///
+/// ```
+/// let points = problems::toy::landscape(4)?;
+/// assert_eq!((points.len(), points[1].0), (25, [-4.0, -1.5]));
+/// # Ok::<(), nonsmooth::OracleError>(())
+/// ```
+pub fn landscape(cells: usize) -> Result<Vec<([f64; 2], f64)>, OracleError> {
+    let objective = toy_objective();
+    let coordinate = |index: usize| LOWER + (UPPER - LOWER) * index as f64 / cells as f64;
+    let controls = (0..=cells).flat_map(|i| (0..=cells).map(move |j| [i, j])).map(|place| place.map(coordinate));
+    let point = |control: [f64; 2]| {
+        let at = Vector::from_row_slice(&control);
+        let state = objective.solver().solve(&at, None, Accuracy::TIGHTEST)?;
+        Ok((control, objective.cost().value(&at, &state)))
+    };
+    controls.map(point).collect()
 }
 
 impl ToyStudy {

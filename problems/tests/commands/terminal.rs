@@ -1,4 +1,4 @@
-//! What the binaries say to people: help, completions; terminals without UTF-8 or colours.
+//! What the binaries say to people: help, completions; terminals without colours.
 
 use testset::kit::{self, command, errors, refused};
 
@@ -45,25 +45,6 @@ fn shells_get_their_completions() {
     }
     refused(HERTZ, &["completions", "cmd"], &["name of a shell", "bash", "zsh"]);
     refused(CONTACT, &["completions"], &["name of a shell"]);
-}
-
-#[test]
-fn a_locale_without_utf8_gets_ascii_and_the_same_numbers() {
-    let arguments = ["evaluate", "--mesh", "2", "--no-checks"];
-    let ascii = |arguments: &[&str]| {
-        let output = command(HERTZ, arguments).env("LC_ALL", "C").output().unwrap();
-        assert!(output.status.success(), "{}", errors(&output));
-        assert!(output.stdout.is_ascii() && output.stderr.is_ascii(), "{}", String::from_utf8_lossy(&output.stdout));
-        String::from_utf8(output.stdout).unwrap()
-    };
-    let objective = |text: &str| {
-        let line = text.lines().find(|line| line.starts_with("objective")).unwrap().to_owned();
-        line.split(' ').find_map(|word| word.parse::<f64>().ok()).unwrap_or_else(|| panic!("{line}"))
-    };
-    assert_eq!(objective(&ascii(&arguments)), objective(&printed(HERTZ, &arguments)));
-    assert!(printed(HERTZ, &["--help"]).contains("Σσ^p") && ascii(&["--help"]).contains("sum sigma^p"));
-    let refusal = command(HERTZ, &["--friction", "-1"]).env("LC_ALL", "POSIX").output().unwrap();
-    assert!(refusal.status.code() == Some(2) && refusal.stderr.is_ascii(), "{}", errors(&refusal));
 }
 
 #[test]

@@ -26,17 +26,6 @@ fn page_names_the_minimiser_and_its_kinks() {
 }
 
 #[test]
-fn the_picture_shows_every_evaluation_of_the_first_run() {
-    let folder = kit::scratch();
-    let out = folder.path();
-    let study = kit::json(TOY2D, &["--start", "-3,5", "--cells", "40", "--json", "--out", kit::text(out)]);
-    let evaluations = study["runs"][0]["evaluations"].as_u64().expect("a number") as usize;
-    let svg = std::fs::read_to_string(out.join("landscape.svg")).expect("the landscape");
-    let marks = ["start", "serious", "null", "refined"].map(|kind| svg.matches(&format!("class=\"{kind}\"")).count());
-    assert_eq!(marks.iter().sum::<usize>(), evaluations, "{marks:?}");
-}
-
-#[test]
 fn bad_input_ends_with_status_2_and_a_reason() {
     for (arguments, reason) in [
         (vec!["--start", "1"], "--start"),

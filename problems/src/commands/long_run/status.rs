@@ -3,7 +3,6 @@
 //! The contact solvers tell their stages as `tracing` events ([`contact::equilibrium::Stage`]); [`StageLayer`] listens
 //! and [`StatusLine`] shows the last one. Where stderr is no terminal there is neither line nor listener.
 
-use crate::commands::ascii::shown;
 use contact::equilibrium::STAGE_TARGET;
 use std::fmt::{Debug, Write};
 use std::io::{IsTerminal, Write as _};
@@ -80,7 +79,7 @@ impl StatusLine {
 
     /// A line that stays.
     pub fn print(&self, line: &str) {
-        self.change(|_| write_stderr(&format!("{ERASE}{}\n", shown(line))));
+        self.change(|_| write_stderr(&format!("{ERASE}{line}\n")));
     }
 
     /// Takes the line off the terminal, until something begins.
