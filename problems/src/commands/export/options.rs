@@ -15,8 +15,9 @@ pub struct ExportOptions {
     /// With --run: the shape of evaluation K instead.
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
-    /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv, --msh, --vtu, --friction-problem the first
-    /// three are written, or for a mesh --stl, --csv, --msh and --vtu.
+    /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv,
+    /// --msh, --vtu, --friction-problem, triangles, STEP and tables are written, or for a mesh --stl, --csv, --msh and
+    /// --vtu.
     #[arg(long)]
     pub stl: bool,
     /// The B-spline surface, and the lower body as a solid, for CAD systems.
