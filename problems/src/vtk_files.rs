@@ -210,7 +210,7 @@ fn contact(contact: &ContactFields, bodies: &[BodyFields]) -> UnstructuredGrid {
         _ => None,
     };
     UnstructuredGrid {
-        description: "Contact boundary of the lower body, undeformed. Lengths in mm, areas in mm^2, stresses in MPa.\n\
+        description: "Contact faces, undeformed. Lengths in mm, areas in mm^2, stresses in MPa.\n\
             status: 0 open, 1 stick, 2 slip. pressure times area: normal force of the node, N.\n\
             sensitivity: derivative of the objective by the position of the node along its normal."
             .to_owned(),

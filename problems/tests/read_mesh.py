@@ -3,7 +3,7 @@
     cargo run --release -p problems --bin contact3d -- problems/scenes/lug_tet10.toml export --out FOLDER
     python3 problems/tests/read_mesh.py FOLDER
 
-Checks that both find the same points, cells and changes in lower_body.vtu, that lower_body.msh has the same points and cells,
+Checks that both find the same points, cells and changes in body.vtu, that body.msh has the same points and cells,
 and that all cells have a positive volume.
 """
 
@@ -21,10 +21,10 @@ def main(folder):
     reader = vtk.vtkXMLUnstructuredGridReader()
     for event in ("ErrorEvent", "WarningEvent"):
         reader.AddObserver(event, lambda *_: errors.append("the reader complains"))
-    reader.SetFileName(str(folder / "lower_body.vtu"))
+    reader.SetFileName(str(folder / "body.vtu"))
     reader.Update()
     grid = reader.GetOutput()
-    vtu, msh = meshio.read(folder / "lower_body.vtu"), meshio.read(folder / "lower_body.msh")
+    vtu, msh = meshio.read(folder / "body.vtu"), meshio.read(folder / "body.msh")
     assert not errors, errors
     points = vtk_to_numpy(grid.GetPoints().GetData())
     assert (points == vtu.points).all() and (points == msh.points).all()

@@ -1,5 +1,5 @@
-//! Triangles as STL files; surfaces over a rectangle, and bodies below them, as STEP files; matrices as Matrix Market files;
-//! grids with data as VTU files; volume meshes as Gmsh files, which are read too.
+//! Triangles as STL files; surfaces over a rectangle, and bodies below them, as STEP files; matrices as Matrix Market
+//! files; grids with data as VTU files; volume meshes as Gmsh files, which are read too.
 //!
 //! ```text
 //! triangles        ─ stl

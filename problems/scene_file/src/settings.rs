@@ -60,14 +60,14 @@ pub struct OptimizerSection {
     /// mesh, with lattices of the same extents. Empty for one run on the mesh of the scene.
     #[schemars(extend("x-unit" = "1"))]
     pub continuation: Vec<ContinuationMesh>,
-    /// So many starts on one mesh, always the same ones: that of the scene, a surface that follows the counter surface,
-    /// then smooth random surfaces; of a lattice, random displacements.
+    /// So many starts on one mesh, always the same ones: that of the scene; heights that follow what lies opposite to
+    /// them, where all controls are heights; then smooth random changes.
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
     pub starts: usize,
-    /// Every start is optimized once, with all controls. Default false for a height surface with more than 3 control
-    /// points along an axis and an objective of the pressures: attempts with all controls and from 3 control points
-    /// per axis to all, then, from the best of them, a run to the end, which begins at the shape of least bending that
-    /// is as good. Other scenes, and growing meshes, are optimized once anyway.
+    /// Every start is optimized once, with all controls. Default false: where a lattice asks for attempts, has more than
+    /// 3 control points along an axis, and the objective is one of the pressures, attempts with all controls and from 3
+    /// control points per axis to all, then, from the best of them, a run to the end, which begins at the shape of least
+    /// bending that is as good. Other scenes, and growing meshes, are optimized once anyway.
     pub single: bool,
 }
 

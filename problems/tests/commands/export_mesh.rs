@@ -33,7 +33,7 @@ fn raised(hold: &str) {
     let printed = kit::json(CONTACT, &[&[scene.as_str()], &options[..]].concat());
     let names: Vec<&str> =
         printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
-    let expected = ["controls.json", "surface.stl", "lower_body.stl", "change.csv", "lower_body.msh", "lower_body.vtu"];
+    let expected = ["controls.json", "surface.stl", "body.stl", "change.csv", "body.msh", "body.vtu"];
     assert_eq!(names, expected);
     let table = std::fs::read_to_string(out.join("change.csv")).unwrap();
     let rows = |face: &str| -> Vec<Vec<f64>> {
@@ -60,8 +60,8 @@ fn raised(hold: &str) {
         largest = largest.max(amount);
     }
     assert!(largest > 0.09 && largest < 0.101, "{largest}");
-    let grid = std::fs::read_to_string(out.join("lower_body.vtu")).unwrap();
-    let nodes = std::fs::read(out.join("lower_body.msh")).unwrap();
+    let grid = std::fs::read_to_string(out.join("body.vtu")).unwrap();
+    let nodes = std::fs::read(out.join("body.msh")).unwrap();
     let mesh = exchange::gmsh::read(&nodes).unwrap();
     assert!(grid.contains(&format!("NumberOfPoints=\"{}\"", mesh.nodes.len())) && grid.contains("Name=\"change\""));
 }
@@ -85,7 +85,7 @@ fn an_exported_mesh_keeps_surfaces_between_cells_and_tags_of_groups() {
     std::fs::write(&scene, fields).unwrap();
     let out = folder.path().join("shape");
     kit::json(CONTACT, &[text(&scene), "export", "--out", text(&out), "--json"]);
-    let mesh = exchange::gmsh::read(&std::fs::read(out.join("lower_body.msh")).unwrap()).unwrap();
+    let mesh = exchange::gmsh::read(&std::fs::read(out.join("body.msh")).unwrap()).unwrap();
     let sizes: Vec<(&str, usize)> = mesh.surfaces.iter().map(|(name, facets)| (&**name, facets.len())).collect();
     assert_eq!(sizes, [("between", 1), ("ends", 2), ("foot", 1), ("head", 1)]);
     assert!(mesh.node_groups.is_empty() && mesh.facets.len() == 3, "{mesh:?}");

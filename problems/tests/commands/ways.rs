@@ -128,7 +128,7 @@ fn lattices_and_several_bodies_have_attempts_and_starts() {
     let scratch = kit::scratch();
     let path = scratch.path().join("shaped.toml");
     std::fs::write(&path, SHAPED).unwrap();
-    let run = |options: &[&str]| kit::json(CONTACT, &[&[text(&path), "--no-checks", "--json"], options].concat());
+    let run = |options: &[&str]| kit::json(CONTACT, &[&[text(&path)], options, &["--no-checks", "--json"]].concat());
     let names = |report: &Value| -> Vec<String> {
         let stages = report["stages"].as_array().unwrap().iter();
         stages.map(|stage| stage["run"].as_str().unwrap_or("whole").to_owned()).collect()

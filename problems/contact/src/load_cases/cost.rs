@@ -3,6 +3,7 @@
 use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs};
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
+use crate::shape::lattice_bending_rows;
 use nonsmooth::composite::{OuterFunction, OuterPart, OutputPiece};
 use nonsmooth::{ConstraintKind, Matrix, Vector};
 use std::ops::Range;
@@ -230,7 +231,7 @@ fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
         if let Some(shape) = body.shape.as_ref().filter(|own| own.fairness != 0.0) {
             let (weight, allowed) = (shape.fairness, "a finite number ≥ 0 (unit of the objective)");
             SceneError::require(weight > 0.0 && weight.is_finite(), "lattice.fairness", weight, allowed)?;
-            parts.push((first, shape.bending_rows(body.start_block().as_ref())? * weight.sqrt()));
+            parts.push((first, lattice_bending_rows(shape, body.start_block().as_ref())? * weight.sqrt()));
         }
         first += body.control_count();
     }

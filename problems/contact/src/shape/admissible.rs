@@ -11,7 +11,7 @@ use crate::body::mesh::Mesh;
 use crate::error::SceneError;
 use crate::names::nodes_of;
 use crate::scene::{Block, CounterSurface, Opposite, Scene};
-use crate::shape::control_rows::NamedRow;
+use crate::shape::control_rows::{NamedRow, slope_rows, volume_rows};
 use crate::shape::{BodyMap, LatticeShape, ShapedFace};
 use nonsmooth::{Matrix, Polyhedron, Vector};
 
@@ -167,8 +167,8 @@ impl Part {
         }
         let allowed = format!("at most {MOST_ROWS} nodes");
         SceneError::require(rows.len() <= MOST_ROWS, "lattice.bounds", format!("{} nodes", rows.len()), allowed)?;
-        rows.extend(shape.slope.map_or_else(Vec::new, |slope| shape.slope_rows(slope, first, block)));
-        let volume_rows = shape.volume.map(|range| shape.volume_rows(range, (map, mesh), block)).transpose()?;
+        rows.extend(shape.slope.map_or_else(Vec::new, |slope| slope_rows(shape, slope, first, block)));
+        let volume_rows = shape.volume.map(|range| volume_rows(shape, range, (map, mesh), block)).transpose()?;
         let bounds = shape.range.map(|value| vec![value; map.controls]);
         let names = shape.control_names(block).into_iter().enumerate();
         let control_names = names.map(|(control, name)| format!("{name}, α[{}]", first + control)).collect();

@@ -20,83 +20,80 @@ struct Line {
     length: f64,
 }
 
-impl LatticeShape {
-    /// Rows R with B = RᵀR: the bending is |Rα|² in the controls; `block`: the block at the start, for lattices in its
-    /// coordinates.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] when there are too few control points for the degree.
-    pub fn bending_rows(&self, block: Option<&Block>) -> Result<Matrix, SceneError> {
-        let (bases, lengths) = (self.bases()?, self.coordinates.lengths(block));
-        let line = |axis: usize| {
-            let places: Vec<f64> = bases[axis].greville().into_iter().map(|place| lengths[axis] * place).collect();
-            Line {
-                shares: shares(&places, lengths[axis]),
-                slopes: slopes(&places),
-                curvatures: curvatures(&places),
-                length: lengths[axis],
-            }
-        };
-        let lines: [Option<Line>; 3] = std::array::from_fn(|axis| (!self.is_across(axis)).then(|| line(axis)));
-        let along = |axis: usize, order: usize| match (&lines[axis], order) {
-            (Some(line), 0) => line.shares.clone(),
-            (Some(line), 1) => line.slopes.clone(),
-            (Some(line), _) => line.curvatures.clone(),
-            // The layer that moves.
-            (None, _) if self.frozen[axis][0] == 0 => Matrix::from_row_slice(1, 2, &[1.0, 0.0]),
-            (None, _) => Matrix::from_row_slice(1, 2, &[0.0, 1.0]),
-        };
-        let whole =
-            |orders: [usize; 3]| along(0, orders[0]).kronecker(&along(1, orders[1])).kronecker(&along(2, orders[2]));
-        let own: Vec<&Line> = lines.iter().flatten().collect();
-        let mean = own.iter().map(|line| line.length).product::<f64>().powf((own.len() as f64).recip());
-        let scale = mean.powi(2 - own.len() as i32).sqrt();
-        let axes: Vec<usize> = (0..3).filter(|&axis| lines[axis].is_some()).collect();
-        let mut parts = Vec::new();
-        for (place, &a) in axes.iter().enumerate() {
-            for &b in &axes[place..] {
-                let mut orders = [0; 3];
-                orders[a] += 1;
-                orders[b] += 1;
-                let rows = whole(orders) * if a == b { scale } else { scale * std::f64::consts::SQRT_2 };
-                parts.extend(self.on_controls(&rows));
-            }
+/// Rows R with B = RᵀR: the bending is |Rα|² in the controls; `block`: the block at the start, for lattices in its
+/// coordinates.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] when there are too few control points for the degree.
+pub(crate) fn lattice_bending_rows(shape: &LatticeShape, block: Option<&Block>) -> Result<Matrix, SceneError> {
+    let (bases, lengths) = (shape.bases()?, shape.coordinates.lengths(block));
+    let line = |axis: usize| {
+        let places: Vec<f64> = bases[axis].greville().into_iter().map(|place| lengths[axis] * place).collect();
+        Line {
+            shares: shares(&places, lengths[axis]),
+            slopes: slopes(&places),
+            curvatures: curvatures(&places),
+            length: lengths[axis],
         }
-        Ok(stacked(&parts, self.control_count()))
+    };
+    let lines: [Option<Line>; 3] = std::array::from_fn(|axis| (!shape.is_across(axis)).then(|| line(axis)));
+    let along = |axis: usize, order: usize| match (&lines[axis], order) {
+        (Some(line), 0) => line.shares.clone(),
+        (Some(line), 1) => line.slopes.clone(),
+        (Some(line), _) => line.curvatures.clone(),
+        // The layer that moves.
+        (None, _) if shape.frozen[axis][0] == 0 => Matrix::from_row_slice(1, 2, &[1.0, 0.0]),
+        (None, _) => Matrix::from_row_slice(1, 2, &[0.0, 1.0]),
+    };
+    let whole =
+        |orders: [usize; 3]| along(0, orders[0]).kronecker(&along(1, orders[1])).kronecker(&along(2, orders[2]));
+    let own: Vec<&Line> = lines.iter().flatten().collect();
+    let mean = own.iter().map(|line| line.length).product::<f64>().powf((own.len() as f64).recip());
+    let scale = mean.powi(2 - own.len() as i32).sqrt();
+    let axes: Vec<usize> = (0..3).filter(|&axis| lines[axis].is_some()).collect();
+    let mut parts = Vec::new();
+    for (place, &a) in axes.iter().enumerate() {
+        for &b in &axes[place..] {
+            let mut orders = [0; 3];
+            orders[a] += 1;
+            orders[b] += 1;
+            let rows = whole(orders) * if a == b { scale } else { scale * std::f64::consts::SQRT_2 };
+            parts.extend(on_controls(shape, &rows));
+        }
     }
-
-    /// Rows over the control points as rows over the controls, for every direction.
-    fn on_controls(&self, rows: &Matrix) -> Vec<Matrix> {
-        let controls = self.controls();
-        let of = |way: usize| {
-            let mut own = Matrix::zeros(rows.nrows(), controls.len());
-            for (mut column, control) in own.column_iter_mut().zip(&controls) {
-                for &(point, _, factor) in control.iter().filter(|(_, own, _)| *own == way) {
-                    column.axpy(factor, &rows.column(point), 1.0);
-                }
-            }
-            own
-        };
-        self.ways().into_iter().map(of).collect()
-    }
+    Ok(stacked(&parts, shape.control_count()))
 }
 
-impl Scene {
-    /// Rows R of the controls of all bodies: their bending is |Rα|².
-    ///
-    /// # Errors
-    /// As [`LatticeShape::bending_rows`].
-    pub fn bending_rows(&self) -> Result<Matrix, SceneError> {
-        let rows = |body: &BodyScene| body.shape.as_ref().map(|shape| shape.bending_rows(body.start_block().as_ref()));
-        let parts = self.bodies.iter().filter_map(rows).collect::<Result<Vec<_>, SceneError>>()?;
-        let mut whole = Matrix::zeros(parts.iter().map(Matrix::nrows).sum(), self.control_count());
-        let (mut row, mut column) = (0, 0);
-        for part in &parts {
-            whole.view_mut((row, column), part.shape()).copy_from(part);
-            (row, column) = (row + part.nrows(), column + part.ncols());
+/// Rows over the control points as rows over the controls, for every direction.
+fn on_controls(shape: &LatticeShape, rows: &Matrix) -> Vec<Matrix> {
+    let controls = shape.controls();
+    let of = |way: usize| {
+        let mut own = Matrix::zeros(rows.nrows(), controls.len());
+        for (mut column, control) in own.column_iter_mut().zip(&controls) {
+            for &(point, _, factor) in control.iter().filter(|(_, own, _)| *own == way) {
+                column.axpy(factor, &rows.column(point), 1.0);
+            }
         }
-        Ok(whole)
+        own
+    };
+    shape.ways().into_iter().map(of).collect()
+}
+
+/// Rows R of the controls of all bodies: their bending is |Rα|².
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] when there are too few control points for a degree.
+pub fn bending_rows(scene: &Scene) -> Result<Matrix, SceneError> {
+    let rows =
+        |body: &BodyScene| body.shape.as_ref().map(|shape| lattice_bending_rows(shape, body.start_block().as_ref()));
+    let parts = scene.bodies.iter().filter_map(rows).collect::<Result<Vec<_>, SceneError>>()?;
+    let mut whole = Matrix::zeros(parts.iter().map(Matrix::nrows).sum(), scene.control_count());
+    let (mut row, mut column) = (0, 0);
+    for part in &parts {
+        whole.view_mut((row, column), part.shape()).copy_from(part);
+        (row, column) = (row + part.nrows(), column + part.ncols());
     }
+    Ok(whole)
 }
 
 /// Some rows below each other.
@@ -157,7 +154,7 @@ mod tests {
             value(std::array::from_fn(|axis| lengths[axis] * places[axis][index[axis]]))
         };
         let controls = Vector::from_vec(lattice.controls().iter().map(point).collect());
-        let rows = lattice.bending_rows(block).expect("valid");
+        let rows = lattice_bending_rows(lattice, block).expect("valid");
         let (squares, form) = ((&rows * &controls).norm_squared(), controls.dot(&(rows.tr_mul(&rows) * &controls)));
         // The quadratic form loses the digits of 1/h⁴, the squares of differences do not.
         assert!((form - squares).abs() < 1e-8 * (1.0 + squares), "{form} {squares}");
@@ -171,19 +168,19 @@ mod tests {
         // (2² + 2·0.5² + 0.6²)·15 mm², but for the half intervals at the edges.
         let exact = (4.0 + 0.5 + 0.36) * 15.0;
         for face in [ShapedFace::Top, ShapedFace::Bottom] {
-            let surface = LatticeShape::heights(face, [40, 40], [2, 2], 7.0);
+            let surface = LatticeShape::heights(face, [20, 20], [2, 2], 7.0);
             assert!(energy(&surface, Some(&block), |[x, y, _]| 2.0 + 0.3 * x - 0.7 * y) < 1e-18);
             let found = energy(&surface, Some(&block), bowl);
-            assert!((found / exact - 1.0).abs() < 0.05, "{found} {exact}");
+            assert!((found / exact - 1.0).abs() < 0.1, "{found} {exact}");
         }
-        // The same in space: over the thickness of 7 mm, divided by the mean length.
+        // In space, over the thickness of 7 mm, divided by the mean length.
         let edges = [[3.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 7.0]];
         let box_of = |control_points: [usize; 3]| LatticeShape {
             degrees: control_points.map(|count| 2.min(count - 1)),
             directions: Directions::Axes([false, true, false]),
             ..LatticeShape::new(Coordinates::Cartesian { corner: [0.0; 3], edges }, control_points, [-1.0, 1.0])
         };
-        for points in [[40, 40, 1], [12, 12, 3]] {
+        for points in [[20, 20, 1], [12, 12, 3]] {
             let found = energy(&box_of(points), None, bowl);
             let expected = exact * 7.0 / 105.0_f64.cbrt();
             assert!((found / expected - 1.0).abs() < 2.0 / points[0] as f64, "{points:?}: {found} {expected}");

@@ -113,8 +113,8 @@ pub(crate) type Control = Vec<(usize, usize, f64)>;
 pub(crate) type Movers = HashMap<(usize, usize), Vec<(usize, f64)>>;
 
 impl LatticeShape {
-    /// A lattice of displacements along all its axes, of degree 3 or as high as the control points allow, whose controls
-    /// lie in a range (mm). Supports hold their nodes.
+    /// A lattice of displacements along all its axes, of degree 3 or as high as the control points allow, whose
+    /// controls lie in a range (mm). Supports hold their nodes.
     pub fn new(coordinates: Coordinates, control_points: [usize; 3], range: [f64; 2]) -> Self {
         Self {
             coordinates,
@@ -317,8 +317,8 @@ impl LatticeShape {
         (0..n1).flat_map(move |i| (0..n2).map(move |j| grid.moved([along(0, i, n1), along(1, j, n2)])))
     }
 
-    /// Names of the controls: place of the control point and direction; `block`: the block at the start, for lattices in
-    /// its coordinates.
+    /// Names of the controls: place of the control point and direction; `block`: the block at the start, for lattices
+    /// in its coordinates.
     pub fn control_names(&self, block: Option<&Block>) -> Vec<String> {
         let name = |control: &Control| {
             let (point, direction, _) = control[0];

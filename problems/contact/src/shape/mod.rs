@@ -12,9 +12,11 @@ mod refinement;
 mod surface;
 
 pub use admissible::AdmissibleSet;
+pub use bending::bending_rows;
+pub(crate) use bending::lattice_bending_rows;
 pub use coordinates::Coordinates;
 pub use lattice::{Directions, LatticeShape, NodeBound, ShapedFace};
 pub(crate) use map::{BodyMap, first_of};
 pub use map::{Positions, ShapeMap, Velocities};
-pub use refinement::CoarseNet;
+pub use refinement::{CoarseNet, coarse_net};
 pub use surface::SplineSurface;

@@ -24,58 +24,53 @@ pub struct CoarseNet {
     pub counts: Vec<usize>,
 }
 
-impl Scene {
-    /// Nets of about so many control points along every coordinate of every lattice, at most those that it has.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] for fewer than two control points, and where a system of equations is singular.
-    pub fn coarse_net(&self, count: usize) -> Result<CoarseNet, SceneError> {
-        let parts =
-            self.shapes().map(|shape| shape.coarse_directions(count)).collect::<Result<Vec<_>, SceneError>>()?;
-        let counts: Vec<usize> = parts.iter().map(Matrix::ncols).collect();
-        let mut directions = Matrix::zeros(self.control_count(), counts.iter().sum());
-        let (mut row, mut column) = (0, 0);
-        for part in &parts {
-            directions.view_mut((row, column), part.shape()).copy_from(part);
-            (row, column) = (row + part.nrows(), column + part.ncols());
-        }
-        Ok(CoarseNet { directions, counts })
+/// Nets of about so many control points along every coordinate of every lattice, at most those that it has.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] for fewer than two control points, and where a system of equations is singular.
+pub fn coarse_net(scene: &Scene, count: usize) -> Result<CoarseNet, SceneError> {
+    let parts = scene.shapes().map(|shape| coarse_directions(shape, count)).collect::<Result<Vec<_>, SceneError>>()?;
+    let counts: Vec<usize> = parts.iter().map(Matrix::ncols).collect();
+    let mut directions = Matrix::zeros(scene.control_count(), counts.iter().sum());
+    let (mut row, mut column) = (0, 0);
+    for part in &parts {
+        directions.view_mut((row, column), part.shape()).copy_from(part);
+        (row, column) = (row + part.nrows(), column + part.ncols());
     }
+    Ok(CoarseNet { directions, counts })
 }
 
-impl LatticeShape {
-    /// Changes of the controls for those of a coarse net, with independent columns.
-    fn coarse_directions(&self, count: usize) -> Result<Matrix, SceneError> {
-        let mut points = Matrix::identity(1, 1);
-        for fine in self.bases()? {
-            points = points.kronecker(&refinement(&fine, &coarser(&fine, count)?)?);
-        }
-        let controls = self.controls();
-        let mut columns: Vec<Vector> = Vec::new();
-        let mut orthonormal: Vec<Vector> = Vec::new();
-        for point in 0..points.ncols() {
-            for way in self.ways() {
-                // The nearest values of the control points that each control can give.
-                let value = |control: &crate::shape::lattice::Control| {
-                    let own = || control.iter().filter(|(_, own, _)| *own == way);
-                    let square: f64 = own().map(|(.., factor)| factor * factor).sum();
-                    let sum: f64 = own().map(|&(fine, _, factor)| factor * points[(fine, point)]).sum();
-                    if square > 0.0 { sum / square } else { 0.0 }
-                };
-                let column = Vector::from_iterator(controls.len(), controls.iter().map(value));
-                let mut rest = column.clone();
-                // Twice, against rounding.
-                for known in orthonormal.iter().chain(&orthonormal) {
-                    rest -= known * known.dot(&rest);
-                }
-                if rest.norm() > INDEPENDENT * points.column(point).norm() {
-                    orthonormal.push(rest.normalize());
-                    columns.push(column);
-                }
+/// Changes of the controls for those of a coarse net, with independent columns.
+fn coarse_directions(shape: &LatticeShape, count: usize) -> Result<Matrix, SceneError> {
+    let mut points = Matrix::identity(1, 1);
+    for fine in shape.bases()? {
+        points = points.kronecker(&refinement(&fine, &coarser(&fine, count)?)?);
+    }
+    let controls = shape.controls();
+    let mut columns: Vec<Vector> = Vec::new();
+    let mut orthonormal: Vec<Vector> = Vec::new();
+    for point in 0..points.ncols() {
+        for way in shape.ways() {
+            // The nearest values of the control points that each control can give.
+            let value = |control: &crate::shape::lattice::Control| {
+                let own = || control.iter().filter(|(_, own, _)| *own == way);
+                let square: f64 = own().map(|(.., factor)| factor * factor).sum();
+                let sum: f64 = own().map(|&(fine, _, factor)| factor * points[(fine, point)]).sum();
+                if square > 0.0 { sum / square } else { 0.0 }
+            };
+            let column = Vector::from_iterator(controls.len(), controls.iter().map(value));
+            let mut rest = column.clone();
+            // Twice, against rounding.
+            for known in orthonormal.iter().chain(&orthonormal) {
+                rest -= known * known.dot(&rest);
+            }
+            if rest.norm() > INDEPENDENT * points.column(point).norm() {
+                orthonormal.push(rest.normalize());
+                columns.push(column);
             }
         }
-        Ok(Matrix::from_columns(&columns))
     }
+    Ok(Matrix::from_columns(&columns))
 }
 
 /// A basis of about so many functions within the span of a fine one.
@@ -117,7 +112,7 @@ mod tests {
                     std::array::from_fn(|axis| coarser(&fine.bases().expect("valid")[axis], count).expect("valid"));
                 assert!((0..2).all(|axis| bases[axis].count() == count.min(counts[axis])));
                 let coarse = crate::shape::SplineSurface::new(bases);
-                let directions = fine.coarse_directions(count).expect("regular");
+                let directions = coarse_directions(&fine, count).expect("regular");
                 let controls: Vec<f64> = (0..directions.ncols()).map(|k| (1.0 + 7.0 * k as f64).sin()).collect();
                 let refined = directions * Vector::from_vec(controls.clone());
                 let surface = fine.surface().expect("valid");
@@ -135,13 +130,13 @@ mod tests {
         let coordinates =
             Coordinates::Cartesian { corner: [0.0; 3], edges: [[3.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 7.0]] };
         let mut lattice = LatticeShape::new(coordinates, [6, 5, 4], [-1.0, 1.0]);
-        assert_eq!(lattice.coarse_directions(3).expect("regular").shape(), (360, 81));
+        assert_eq!(coarse_directions(&lattice, 3).expect("regular").shape(), (360, 81));
         lattice.frozen[2] = [1, 0];
-        let still = lattice.coarse_directions(3).expect("regular");
+        let still = coarse_directions(&lattice, 3).expect("regular");
         assert_eq!(still.nrows(), 270);
         assert!((54..=81).contains(&still.ncols()), "{}", still.ncols());
         lattice.symmetric[0] = true;
-        let symmetric = lattice.coarse_directions(3).expect("regular");
+        let symmetric = coarse_directions(&lattice, 3).expect("regular");
         assert_eq!(symmetric.nrows(), lattice.control_count());
         let lower = |matrix: &Matrix| matrix.clone().svd(false, false).singular_values.min();
         assert!(symmetric.ncols() < still.ncols() && lower(&symmetric) > 1e-8 && lower(&still) > 1e-8);

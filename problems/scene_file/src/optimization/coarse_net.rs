@@ -2,7 +2,7 @@
 
 use contact::error::SceneError;
 use contact::scene::Scene;
-use contact::shape::CoarseNet;
+use contact::shape::{self, CoarseNet};
 
 /// Control points along every coordinate of a coarse net: a bowl or a saddle, with every slope. Nets of 4 were measured
 /// to end higher on the seat of the tutorial, and nets of 3 and then 4 to take more evaluations for the same ends.
@@ -17,7 +17,7 @@ pub fn begins_with_attempts(scene: &Scene) -> bool {
 /// The coarse net of a scene.
 ///
 /// # Errors
-/// As [`Scene::coarse_net`].
+/// As [`shape::coarse_net`].
 pub fn coarse_net(scene: &Scene) -> Result<CoarseNet, SceneError> {
-    scene.coarse_net(COARSE)
+    shape::coarse_net(scene, COARSE)
 }

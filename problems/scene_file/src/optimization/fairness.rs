@@ -9,6 +9,7 @@
 use crate::optimization::OptimizationError;
 use contact::contact_objective::ContactObjective;
 use contact::error::SceneError;
+use contact::shape::bending_rows;
 use nonsmooth::composite::{Linearization, LinearizationRequest, Linearized};
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric, project};
 use nonsmooth::{Accuracy, Matrix, NonsmoothObjective, Polyhedron, Request, Vector};
@@ -35,9 +36,9 @@ pub struct FairShape {
 /// αᵀBα of the controls of all bodies.
 ///
 /// # Errors
-/// As [`Scene::bending_rows`](contact::scene::Scene::bending_rows).
+/// As [`bending_rows`].
 pub fn bending_of(objective: &ContactObjective, controls: &Vector) -> Result<f64, SceneError> {
-    Ok(bending(&objective.solver().problem().scene.bending_rows()?, controls))
+    Ok(bending(&bending_rows(&objective.solver().problem().scene)?, controls))
 }
 
 /// |Rα|²; 0 where it is rounding, which decides nothing.
@@ -52,7 +53,7 @@ fn bending(rows: &Matrix, controls: &Vector) -> f64 {
 /// # Errors
 /// [`OptimizationError::Derivatives`] from the contact solver.
 pub fn fair_shape(objective: &ContactObjective, controls: &Vector) -> Result<Option<FairShape>, OptimizationError> {
-    let rows = objective.solver().problem().scene.bending_rows()?;
+    let rows = bending_rows(&objective.solver().problem().scene)?;
     let accuracy = Accuracy::relative(1e-4).unwrap_or(Accuracy::TIGHTEST);
     let wanted = LinearizationRequest { accuracy, below: f64::INFINITY };
     let request = Request { linearization: Some(wanted), ..Request::tight(controls) };

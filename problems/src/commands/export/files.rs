@@ -30,8 +30,11 @@ impl OutputFile {
     }
 }
 
-/// The name of a file of a body: `lower_body.stl`. The body of a mesh alone has always been the lower one here.
+/// The name of a file of a body: `pad_body.stl`, or `body.stl` of a body called so.
 pub fn body_file(scene: &Scene, body: usize, ending: &str) -> String {
-    let stem = if scene.bodies[body].name == "body" { "lower".to_owned() } else { stem(scene, body) };
-    format!("{stem}_body.{ending}")
+    if scene.bodies[body].name == "body" {
+        format!("body.{ending}")
+    } else {
+        format!("{}_body.{ending}", stem(scene, body))
+    }
 }

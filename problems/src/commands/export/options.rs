@@ -15,20 +15,21 @@ pub struct ExportOptions {
     /// With --run: the shape of evaluation K instead.
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
-    /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv, --msh, --vtu, --friction-problem the first
-    /// three are written, or for a mesh --stl, --csv, --msh and --vtu.
+    /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv,
+    /// --msh, --vtu, --friction-problem, triangles, STEP and tables are written, or for a mesh --stl, --csv, --msh and
+    /// --vtu.
     #[arg(long)]
     pub stl: bool,
-    /// The B-spline surface, and the lower body as a solid, for CAD systems.
+    /// The B-spline surface, and the body as a solid, for CAD systems.
     #[arg(long)]
     pub step: bool,
     /// Tables: the change of shape (points, normals, amounts to remove), and the heights of the surface of a block.
     #[arg(long)]
     pub csv: bool,
-    /// The mesh of the lower body in this shape as a Gmsh file, with its names.
+    /// The mesh of every optimized body in this shape as a Gmsh file, with its names.
     #[arg(long)]
     pub msh: bool,
-    /// The mesh of the lower body in this shape as a VTU file, with its change from the start.
+    /// The mesh of every optimized body in this shape as a VTU file, with its change from the start.
     #[arg(long)]
     pub vtu: bool,
     /// Stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.

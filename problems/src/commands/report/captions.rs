@@ -9,7 +9,7 @@ pub const PRESSURE_ALONE: &str = "Contact pressure over the plan of the contact 
 pub const CUTS: &str = "The same pressures along lines through the peak of each shape.";
 
 pub const STATUS: &str = "Open nodes carry no pressure. Sticking nodes hold by friction, slipping nodes slide against it. Arrows show the \
-    friction traction that the lower body exerts on what lies above; all are drawn on one scale.";
+    friction traction that the slave body exerts on what it touches; all are drawn on one scale.";
 
 pub const STATUS_WITHOUT_FRICTION: &str = "Open nodes carry no pressure, closed ones do.";
 

@@ -140,7 +140,7 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
                 figures.push((plan.figure(name, title(&format!("contact pressure{of}")), index, rows)?, PRESSURES));
             }
             if !picture.relief.is_empty() && (changes || rows[0].solved.optimization.is_some()) {
-                let owner = if owner.is_empty() { "contact surface of the lower body" } else { owner };
+                let owner = if owner.is_empty() { "contact surface" } else { owner };
                 let name = format!("surfaces_{number}{suffix}");
                 let plan = Plan {
                     quantity: &picture.quantity,
