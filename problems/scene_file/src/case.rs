@@ -1,6 +1,6 @@
 //! From a scene file to the scene and the settings of a run.
 
-use crate::continuation;
+use crate::continuation::{self, FIELD};
 use crate::either::Either;
 use crate::general::general_scene;
 use crate::limit::limits;
@@ -20,6 +20,7 @@ use contact::load_cases::{Bound, CasesCost, LoadCase, Over, WeightedCase};
 use contact::memory;
 use contact::names::find;
 use contact::scene::{Block, Scene};
+use contact::shape::ShapeScene;
 use contact::solvers::{Processes, SolverKind, SolverPlan, Wanted};
 use contact::tfeti::PreconditionerKind;
 use exchange::gmsh::GmshMesh;
@@ -94,7 +95,10 @@ impl Case {
     fn of_parts(file: &SceneFile, folder: &Path, parts: Parts) -> Result<Self, SceneError> {
         let Parts { scene, start, notes } = parts;
         scene.validate().map_err(|error| named(file, error))?;
-        let meshes = continuation::cases(file, folder, &scene)?;
+        continuation::check(&file.optimizer.continuation, file.optimizer.starts, &scene)?;
+        let files =
+            file.optimizer.continuation.iter().enumerate().filter_map(|(index, mesh)| Some((index, mesh.file()?)));
+        let meshes = files.map(|mesh| on_mesh((file, folder), mesh, &scene)).collect::<Result<_, _>>()?;
         let (mut objective, mut limited) = (file.objective.clone(), file.limit.clone());
         check_body("objective.region", objective.region.as_mut(), &scene)?;
         for (index, limit) in limited.iter_mut().enumerate() {
@@ -264,4 +268,32 @@ fn check_accuracy(objective: &Objective, accuracy: AccuracyName) -> Result<(), S
         return Err(SceneError::out_of_range("optimizer.accuracy", "on-demand", allowed));
     }
     Ok(())
+}
+
+/// The case on a file of the continuation. Its lattices have the extents of those of the scene, so that a control means
+/// the same on all meshes.
+///
+/// # Errors
+/// [`SceneError`] with the name of the file.
+fn on_mesh(
+    (file, folder): (&SceneFile, &Path),
+    (index, name): (usize, &str),
+    scene: &Scene,
+) -> Result<Case, SceneError> {
+    let mut own = file.clone();
+    own.optimizer.continuation.clear();
+    own.mesh_files_mut().for_each(|mesh| name.clone_into(mesh));
+    let mut case = Case::new(&own, folder).map_err(|error| match error {
+        error @ (SceneError::InFile { .. } | SceneError::File { .. }) => error,
+        other => SceneError::InFile { file: format!("{FIELD}[{index}] = \"{name}\""), source: Box::new(other) },
+    })?;
+    for changed in std::iter::once(&mut case.scene).chain(case.cases.iter_mut().map(|case| &mut case.scene)) {
+        for (body, model) in changed.bodies.iter_mut().zip(&scene.bodies) {
+            if let (Some(ShapeScene::Lattice(own)), Some(ShapeScene::Lattice(model))) = (&mut body.shape, &model.shape)
+            {
+                own.coordinates = model.coordinates;
+            }
+        }
+    }
+    Ok(case)
 }
