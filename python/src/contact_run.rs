@@ -1,6 +1,6 @@
 //! The optimization of a scene: the runs of its driver, with journals, callback and signals.
 
-use crate::contact_scene::in_words;
+use crate::contact_state::in_words;
 use crate::failure::Failure;
 use crate::outcome::RunOutcome;
 use crate::run::{Interrupter, RunError, check_start, performed, signal};

@@ -2,8 +2,9 @@
 
 use crate::contact_mesh::MeshArrays;
 use crate::contact_run::optimize;
-use crate::contact_state::StateArrays;
+use crate::contact_state::{StateArrays, in_words};
 use crate::convert;
+use crate::errors::failed;
 use crate::failure::Failure;
 use crate::outcome::RunOutcome;
 use crate::run::signal;
@@ -38,7 +39,7 @@ pub struct ContactScene {
     objective: OnceLock<ContactObjective>,
 }
 
-pub fn input(error: SceneError) -> PyErr {
+fn input(error: SceneError) -> PyErr {
     match error {
         SceneError::File { .. } => PyOSError::new_err(error.to_string()),
         _ => PyValueError::new_err(error.to_string()),
@@ -58,14 +59,6 @@ fn shape(error: SceneError) -> PyErr {
     match error {
         SceneError::NotAdmissible { .. } => crate::errors::OutsideDomain::new_err(error.to_string()),
         error => input(error),
-    }
-}
-
-/// Bad input, or a computation that failed.
-pub fn failed(error: problems::commands::Failure) -> PyErr {
-    match error {
-        problems::commands::Failure::Input(words) => PyValueError::new_err(words),
-        error => PyRuntimeError::new_err(error.to_string()),
     }
 }
 
@@ -321,11 +314,6 @@ fn set_limits(
         limits.append(own)?;
     }
     result.set_item("limits", limits)
-}
-
-/// Every warning as its code and its sentence.
-pub fn in_words(warnings: &[Warning]) -> Vec<String> {
-    warnings.iter().map(ToString::to_string).collect()
 }
 
 impl ContactScene {

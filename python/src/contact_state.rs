@@ -3,6 +3,7 @@
 use crate::convert::shaped;
 use contact::equilibrium::{ContactForces, ContactProblem, ContactStatus};
 use contact::fields::{BodyFields, Fields};
+use contact::plausibility::Warning;
 use numpy::Element;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -104,4 +105,9 @@ fn set_body(result: &Bound<'_, PyDict>, body: &BodyFields) -> PyResult<()> {
 /// Adds an array with a row per node or cell.
 fn set_rows<const C: usize>(result: &Bound<'_, PyDict>, name: &str, rows: &[[f64; C]]) -> PyResult<()> {
     result.set_item(name, shaped(result.py(), rows.as_flattened().to_vec(), &[rows.len(), C])?)
+}
+
+/// Every warning as its code and its sentence.
+pub fn in_words(warnings: &[Warning]) -> Vec<String> {
+    warnings.iter().map(ToString::to_string).collect()
 }

@@ -4,6 +4,8 @@ use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, JournalError, OptimizeError};
 use pyo3::PyErr;
 use pyo3::create_exception;
+#[cfg(feature = "contact")]
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::exceptions::{PyException, PyValueError};
 
 create_exception!(
@@ -39,4 +41,13 @@ pub fn journal(error: JournalError) -> PyErr {
 /// A Taylor test without a result.
 pub fn verify(error: VerifyError) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// Bad input, or a computation that failed.
+#[cfg(feature = "contact")]
+pub fn failed(error: problems::commands::Failure) -> PyErr {
+    match error {
+        problems::commands::Failure::Input(words) => PyValueError::new_err(words),
+        error => PyRuntimeError::new_err(error.to_string()),
+    }
 }

@@ -93,7 +93,7 @@ impl From<RunError> for PyErr {
             RunError::Optimize(error) => errors::optimize(error),
             RunError::Journal(error) => errors::journal(error),
             #[cfg(feature = "contact")]
-            RunError::Scene(error) => crate::contact_scene::failed(problems::commands::Failure::from(error)),
+            RunError::Scene(error) => errors::failed(problems::commands::Failure::from(error)),
             RunError::OtherStart(folder) => PyValueError::new_err(format!(
                 "{folder}: the journal began at another x0, so that none of its evaluations would be of use: pass that x0, or another \
                  folder as journal"

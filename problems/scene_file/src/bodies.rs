@@ -40,7 +40,7 @@ pub struct BodySection {
     /// The loads; none on a contact face of a block.
     #[serde(default)]
     pub loads: Vec<LoadSection>,
-    /// The optimized shape. Default none: the body keeps its shape.
+    /// The shape that is optimized. Default none: the body keeps its shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lattice: Option<LatticeSection>,
 }

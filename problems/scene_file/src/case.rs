@@ -1,6 +1,6 @@
 //! From a scene file to the scene and the settings of a run.
 
-use crate::continuation;
+use crate::continuation::{self, FIELD};
 use crate::conversion::{Parts, Sources, scene_of};
 use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
@@ -87,7 +87,10 @@ impl Case {
     fn of_sources(file: &SceneFile, sources: &Sources<'_>) -> Result<Self, SceneError> {
         let (Parts { scene, start, notes }, folder) = (scene_of(file, sources)?, sources.folder);
         scene.validate()?;
-        let meshes = continuation::cases(file, folder, &scene)?;
+        continuation::check(&file.optimizer.continuation, file.optimizer.starts, &scene)?;
+        let files =
+            file.optimizer.continuation.iter().enumerate().filter_map(|(index, mesh)| Some((index, mesh.file()?)));
+        let meshes = files.map(|mesh| on_mesh((file, folder), mesh, &scene)).collect::<Result<_, _>>()?;
         check_body("objective.region", file.objective.region.as_ref(), &scene)?;
         for (index, limit) in file.limit.iter().enumerate() {
             check_body(&format!("limit[{index}].region"), limit.region.as_ref(), &scene)?;
@@ -256,4 +259,31 @@ fn check_accuracy(objective: &Objective, accuracy: AccuracyName) -> Result<(), S
         return Err(SceneError::out_of_range("optimizer.accuracy", "on-demand", allowed));
     }
     Ok(())
+}
+
+/// The case on a file of the continuation. Its lattices have the extents of those of the scene, so that a control means
+/// the same on all meshes.
+///
+/// # Errors
+/// [`SceneError`] with the name of the file.
+fn on_mesh(
+    (file, folder): (&SceneFile, &Path),
+    (index, name): (usize, &str),
+    scene: &Scene,
+) -> Result<Case, SceneError> {
+    let mut own = file.clone();
+    own.optimizer.continuation.clear();
+    own.mesh_files_mut().for_each(|mesh| name.clone_into(mesh));
+    let mut case = Case::new(&own, folder).map_err(|error| match error {
+        error @ (SceneError::InFile { .. } | SceneError::File { .. }) => error,
+        other => SceneError::InFile { file: format!("{FIELD}[{index}] = \"{name}\""), source: Box::new(other) },
+    })?;
+    for changed in std::iter::once(&mut case.scene).chain(case.cases.iter_mut().map(|case| &mut case.scene)) {
+        for (body, model) in changed.bodies.iter_mut().zip(&scene.bodies) {
+            if let (Some(own), Some(model)) = (&mut body.shape, &model.shape) {
+                own.coordinates = model.coordinates;
+            }
+        }
+    }
+    Ok(case)
 }

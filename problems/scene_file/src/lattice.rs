@@ -16,7 +16,7 @@ const USUAL_DEGREE: usize = 3;
 /// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
 const MARGIN: f64 = 1e-6;
 
-/// The optimized shape of a body. Either the heights of a face of a block (`heights`), control points over its base; or
+/// The shape of a body that is optimized. Either the heights of a face of a block (`heights`), control points over its base; or
 /// displacements of control points in a lattice around a region: x = x0 + sum of B-splines times displacements (mm).
 /// Nodes outside the box of the lattice stay where they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

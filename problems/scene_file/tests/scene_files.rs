@@ -176,7 +176,7 @@ fn contradictions_between_fields_are_refused() {
         ("face = \"bottom\"\nheld", "face = \"top\"\nheld", "any face but the contact boundary"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"controls\", heights = [1.0, 2.0] }", "36"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),
-        ("face = \"x1-max\"", "face = \"x1-mxa\"", "body[1].loads[1].face"),
+        ("face = \"x1-max\"", "face = \"x1-mxa\"", "upper.loads[1].face"),
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "x1-max"),
         ("weight = \"nodes\"", "measure = \"peak-pressure\"\nexponent = 4", "objective.exponent"),
         ("[[contact]]", "[optimizer]\ncontinuation = [6, 6]\n[[contact]]", "optimizer.continuation"),

@@ -20,7 +20,7 @@ fn options_out_of_range_are_named_with_value_and_range() {
         ("--exponent", "65", "> 1 and ≤ 64"),
         ("--load-factor", "nan", "a finite number"),
         ("--load-factor", "1e300", "≤ 1e15 MPa"),
-        ("--control-points", "6x400", "≥ 2 and ≤ 40"),
+        ("--control-points", "6x400", "≥ 1 and ≤ 40"),
         ("--degrees", "x", "an integer ≥ 0 and ≤ 39"),
         ("--threads", "2000", "1..=256"),
         ("--threads", "-3", "1..=256"),

@@ -102,7 +102,7 @@ fn a_mesh_beyond_the_memory_is_named_before_the_first_row() {
     let output = kit::run(SIGNORINI, &["--continuation", "2,400", "--max-evaluations", "2"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        errors(&output).contains("optimizer.continuation[1]: mesh.bricks = 400x400x400 bricks"),
+        errors(&output).contains("optimizer.continuation[1]: body[0].block.bricks = 400x400x400 bricks"),
         "{}",
         errors(&output)
     );

@@ -89,10 +89,10 @@ impl<'p> Driver<'p> {
         &self.first
     }
 
-    /// Optimizes from some controls, on all meshes in turn. `perform` makes a run, with a journal and an observer if the
-    /// caller has some. `config`: as [`settings`]; its number of evaluations holds for every run, its time from `clock`
-    /// on for all of them, its scaling, unless that is the usual one, for runs with all controls. The runs stay in `runs`
-    /// when a later one fails.
+    /// Optimizes from some controls, on all meshes in turn. `perform` makes a run, with a journal and an observer if
+    /// the caller has some. `config`: as [`settings`]; its number of evaluations holds for every run, its time from
+    /// `clock` on for all of them, its scaling, unless that is the usual one, for runs with all controls. The runs
+    /// stay in `runs` when a later one fails.
     ///
     /// # Errors
     /// Those of `perform`, and [`OptimizationError`].

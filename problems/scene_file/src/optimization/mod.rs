@@ -5,9 +5,10 @@
 //!                                             │                                └ fairness: the shape of least bending
 //!                                    caller: performs a run, with a journal and an observer of its own
 //! ```
-//! The program, the Python package and programs in Rust use the same [`Driver`] and find the same controls, bit for bit.
-//! A caller says where the journal of a run lies; [`Part::folder`] names its folder within that of the optimization.
-//! Repeated from its journals, an optimization takes the same course again, and goes on where it was interrupted.
+//! The program, the Python package and programs in Rust use the same [`Driver`] and find the same controls, bit for
+//! bit. A caller says where the journal of a run lies; [`Part::folder`] names its folder within that of the
+//! optimization. Repeated from its journals, an optimization takes the same course again, and goes on where it was
+//! interrupted.
 //!
 //! ```no_run
 //! use scene_file::{Case, SceneFile, optimization::optimize};
