@@ -148,7 +148,7 @@ fn the_bending_is_added_with_its_derivatives() {
         let value =
             |objective: &ContactObjective| objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value;
         let scene = &plain.solver().problem().scene;
-        let energy = (contact::shape::bending_rows(&scene).unwrap() * &at).norm_squared();
+        let energy = (contact::shape::bending_rows(scene).unwrap() * &at).norm_squared();
         let expected = value(&plain) + weight * energy;
         assert!((value(&bent) / expected - 1.0).abs() < 1e-12 && weight * energy > 1e-9 * expected);
         let direction = Direction::Given(seeded_direction(36, 4));
