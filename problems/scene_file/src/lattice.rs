@@ -1,7 +1,7 @@
 //! The lattice of a scene file: heights of a face of a block, and free-form shapes of any region.
 
 use crate::conversion::required;
-use crate::{StartSection, shapes};
+use crate::{ObstacleSection, shapes};
 use contact::body::mesh::Mesh;
 use contact::error::SceneError;
 use contact::names::nodes_of;
@@ -34,9 +34,14 @@ pub struct LatticeSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0, max = 39)), extend("x-unit" = "1"))]
     pub degrees: Option<Vec<usize>>,
-    /// The heights that an optimization starts from; required for heights, and for heights alone.
+    /// The heights that an optimization starts from, at the places of the control points, which are spread evenly over
+    /// the base; for heights alone. Required there, unless controls are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub start: Option<StartSection>,
+    pub start: Option<ObstacleSection>,
+    /// Control heights at the start one by one, row major with x1 first, in place of start. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(max = 1e9)), extend("x-unit" = "mm"))]
+    pub controls: Option<Vec<f64>>,
     /// Least distance of a control point from the other face of the block; required for heights, and for heights alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
@@ -196,9 +201,15 @@ impl LatticeSection {
         }
         let thickness =
             *required("lattice.thickness", self.thickness.as_ref(), "the least height of a control point (mm)")?;
-        let section =
-            required("lattice.start", self.start.as_ref(), "a table such as { form = \"plane\", height = 10.0 }")?;
-        let (height, start) = shapes::start(section, size, points, folder)?;
+        let (height, start) = match (&self.controls, &self.start) {
+            (Some(controls), None) => shapes::mean_height(controls.clone(), points)?,
+            (None, Some(section)) => shapes::start(section, size, points, folder)?,
+            (given, _) => {
+                let found = if given.is_some() { "beside controls" } else { "missing" };
+                let allowed = "a table such as { form = \"plane\", height = 10.0 }, or controls";
+                return Err(SceneError::out_of_range("lattice.start", found, allowed));
+            }
+        };
         let heights = LatticeShape::heights(face, points, degrees, height);
         let shape = LatticeShape {
             thickness: Some(thickness),
@@ -228,7 +239,8 @@ impl LatticeSection {
     /// # Errors
     /// [`SceneError::OutOfRange`] for fields that exclude each other and for names that the mesh does not have.
     pub(crate) fn shape(&self, mesh: &Mesh) -> Result<LatticeShape, SceneError> {
-        for (field, given) in [("start", self.start.is_some()), ("thickness", self.thickness.is_some())] {
+        let (start, controls, thickness) = (self.start.is_some(), self.controls.is_some(), self.thickness.is_some());
+        for (field, given) in [("start", start), ("controls", controls), ("thickness", thickness)] {
             if given {
                 let allowed = "none without lattice.heights, since displacements start at 0";
                 return Err(SceneError::out_of_range(format!("lattice.{field}"), "a value", allowed));

@@ -49,7 +49,7 @@ pub use region::RegionSection;
 pub use schema::schema;
 pub use setting::{Setting, check_path, set_field};
 pub use settings::{AccuracyName, MethodName, OptimizerSection, OutputSection, SolverSection};
-pub use surfaces::{ObstacleSection, StartSection};
+pub use surfaces::ObstacleSection;
 pub use table::field_tables;
 pub use text::read_text;
 pub use wanted_pressure::WantedPressure;
@@ -146,7 +146,7 @@ impl SceneFile {
         let count = bodies.len();
         for (index, body) in bodies.iter_mut().enumerate() {
             files.extend(body.mesh.as_mut().map(|file| (numbered(mesh, index, count, ""), file)));
-            if let Some(StartSection::Grid { file }) = body.lattice.as_mut().and_then(|own| own.start.as_mut()) {
+            if let Some(ObstacleSection::Grid { file, .. }) = body.lattice.as_mut().and_then(|own| own.start.as_mut()) {
                 files.push((numbered(start, index, count, ""), file));
             }
             let faces =

@@ -1,8 +1,8 @@
 //! Obstacles of a scene file, and the heights that shapes start from.
 
+use crate::ObstacleSection;
 use crate::conversion::required;
 use crate::grid_file;
-use crate::{ObstacleSection, StartSection};
 use contact::error::SceneError;
 use contact::scene::CounterSurface;
 use std::path::Path;
@@ -39,27 +39,28 @@ pub(crate) fn obstacle(
 
 /// Start height of the scene, and the controls where they differ from it.
 pub(crate) fn start(
-    section: &StartSection,
+    section: &ObstacleSection,
     size: [f64; 2],
     counts: [usize; 2],
     folder: &Path,
 ) -> Result<(f64, Option<Vec<f64>>), SceneError> {
-    let sampled = |surface: CounterSurface| {
-        let along = |axis: usize, index: usize| size[axis] * index as f64 / (counts[axis].max(2) - 1) as f64;
-        let places = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
-        places.map(|(i, j)| surface.height(along(0, i), along(1, j))).collect::<Vec<f64>>()
-    };
-    let controls = match section {
-        &StartSection::Plane { height } => return Ok((height, None)),
-        &StartSection::Waves { base, first, second, period } => {
-            sampled(CounterSurface::Waves { base, first, second, period, origin: [0.0; 2] })
-        }
-        StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?)),
-        StartSection::Controls { heights } => heights.clone(),
-    };
+    if let ObstacleSection::Plane { height } = *section {
+        return Ok((height, None));
+    }
+    let surface = obstacle("lattice.start", section, Some(([0.0; 2], size)), folder)?;
+    if !surface.has_heights() {
+        return Err(SceneError::out_of_range("lattice.start", "a surface in space", "a height over x1 and x2"));
+    }
+    let along = |axis: usize, index: usize| size[axis] * index as f64 / (counts[axis].max(2) - 1) as f64;
+    let places = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
+    mean_height(places.map(|(i, j)| surface.height(along(0, i), along(1, j))).collect(), counts)
+}
+
+/// The mean of control heights, and these.
+pub(crate) fn mean_height(controls: Vec<f64>, counts: [usize; 2]) -> Result<(f64, Option<Vec<f64>>), SceneError> {
     let expected = counts[0] * counts[1];
     if controls.len() != expected {
-        return Err(SceneError::WrongCount { what: "lattice.start.heights".into(), expected, found: controls.len() });
+        return Err(SceneError::WrongCount { what: "lattice.controls".into(), expected, found: controls.len() });
     }
     let mean = controls.iter().sum::<f64>() / expected as f64;
     Ok((mean, Some(controls)))

@@ -1,10 +1,10 @@
-//! Surfaces of a scene file: obstacles, and heights at the start.
+//! Surfaces of a scene file: obstacles, faces of blocks, heights at the start.
 
 use contact::scene::Side;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rigid obstacle, or the heights of a face of a block.
+/// A rigid obstacle, the heights of a face of a block, or those that a shape starts from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ObstacleSection {
@@ -91,45 +91,5 @@ pub enum ObstacleSection {
         /// Where the body is: inside for a bore.
         #[serde(default)]
         side: Side,
-    },
-}
-
-/// Heights at the start. All forms but `controls` are sampled at the places of the control points, which are spread
-/// evenly over the base.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum StartSection {
-    /// All control heights alike.
-    Plane {
-        /// The height.
-        #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
-        height: f64,
-    },
-    /// base + first sin(2 pi x1/period) + second cos(2 pi x2/period).
-    Waves {
-        /// Mean height.
-        #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
-        base: f64,
-        /// Amplitude along x1.
-        #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
-        first: f64,
-        /// Amplitude along x2.
-        #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
-        second: f64,
-        /// Wave length.
-        #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
-        period: f64,
-    },
-    /// Heights on a uniform grid over the base, bilinear in between.
-    Grid {
-        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that
-        /// begin with # are comments.
-        file: String,
-    },
-    /// Control heights one by one.
-    Controls {
-        /// Row major, index i*n2 + j with i along x1.
-        #[schemars(inner(range(max = 1e9)), extend("x-unit" = "mm"))]
-        heights: Vec<f64>,
     },
 }

@@ -174,7 +174,7 @@ fn contradictions_between_fields_are_refused() {
         ("heights = \"top\"", "heights = \"top\"\nregion = [\"top\"]", "none beside lattice.heights"),
         ("thickness = 5.0", "", "lattice.thickness = missing"),
         ("face = \"bottom\"\nheld", "face = \"top\"\nheld", "any face but the contact boundary"),
-        ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"controls\", heights = [1.0, 2.0] }", "36"),
+        ("start = { form = \"plane\", height = 10.0 }", "controls = [1.0, 2.0]", "36"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "upper.loads[1].face"),
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "x1-max"),

@@ -19,7 +19,8 @@ use std::path::Path;
 const LARGEST_FILE: u64 = 256 << 20;
 
 /// Fields on which a certificate does not depend.
-const LEFT_OUT: [&str; 6] = ["name", "solver", "optimizer", "output", "body.block.subdomains", "body.lattice.start"];
+const LEFT_OUT: [&str; 7] =
+    ["name", "solver", "optimizer", "output", "body.block.subdomains", "body.lattice.start", "body.lattice.controls"];
 
 /// The keys of the JSON of `recheck`.
 #[derive(Debug, Serialize)]

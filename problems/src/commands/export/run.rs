@@ -29,8 +29,9 @@ const SURFACES: [&str; 8] = [
     "contact.obstacle",
 ];
 /// The fields of a lattice on which its surfaces do not depend: start, bounds, course.
-const NO_SURFACE: [&str; 7] = [
+const NO_SURFACE: [&str; 8] = [
     "body.lattice.start",
+    "body.lattice.controls",
     "body.lattice.thickness",
     "body.lattice.slope",
     "body.lattice.volume",

@@ -48,7 +48,7 @@ impl Identity {
         let mut contents = BTreeMap::from([(START.to_owned(), hash(json(initial_controls)?.as_bytes()))]);
         // The start is known by its controls.
         for lattice in scene.body.iter_mut().filter_map(|body| body.lattice.as_mut()) {
-            lattice.start = None;
+            (lattice.start, lattice.controls) = (None, None);
         }
         for (name, file) in scene.files_mut() {
             contents.insert(name.to_owned(), hash(&content(loaded, file)?));

@@ -181,7 +181,7 @@ fn shape(sizes: &Sizes, random: &mut Random) -> String {
     let heights: Vec<String> = (0..16).map(|_| format!("{:e}", sizes.height - ripple * random.unit())).collect();
     format!(
         "[body.lattice]\nheights = \"top\"\ncontrol_points = [4, 4]\nthickness = {:e}\nslope = 1e9\n\
-         volume = [0.0, 1e27]\nstart = {{ form = \"controls\", heights = [{}] }}\n\n",
+         volume = [0.0, 1e27]\ncontrols = [{}]\n\n",
         0.1 * sizes.height,
         heights.join(", ")
     )
