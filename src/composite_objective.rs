@@ -75,7 +75,7 @@ fn of_outputs(outer: &dyn OuterFunction, known: &Linearization) -> Option<Constr
     let count = outer.constraint_kinds().len();
     let gradient = |weights: &Vector| Ok::<_, Infallible>(jacobian.tr_mul(weights));
     let found = |pieces: &[_]| {
-        let Ok(found) = ConstraintEvaluation::of_pieces((count, jacobian.ncols()), pieces, gradient, true);
+        let Ok(found) = ConstraintEvaluation::of_pieces(count, jacobian.ncols(), pieces, gradient, true);
         found
     };
     (count > 0).then(|| found(&outer.constraint_pieces(outputs)))
@@ -193,7 +193,7 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
             let dual = self.solver.output_dual(control, state, weights);
             Ok(dual.control + self.solver.coderivative(control, state, &dual.state)?.element)
         };
-        ConstraintEvaluation::of_pieces((count, control.len()), &pieces, gradient, false).map(Some)
+        ConstraintEvaluation::of_pieces(count, control.len(), &pieces, gradient, false).map(Some)
     }
 
     /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ.

@@ -19,7 +19,7 @@ pub enum InputError {
     /// An entry is NaN or infinite.
     #[error("{what}: entry {index} is {value}, expected a finite number")]
     NotFinite {
-        /// What holds the entry.
+        /// The vector or matrix that holds the entry.
         what: &'static str,
         /// Position of the entry.
         index: usize,

@@ -165,50 +165,50 @@
 //!
 //! # Modules
 //!
-//! | module | what it holds |
+//! | where | what |
 //! |---|---|
-//! | [`problem`] | [`StateSolver`], [`Coderivative`], [`Cost`]: what a user implements |
-//! | [`reduced`] | [`ReducedObjective`]: Θ = J∘S and its subgradient by the chain rule |
-//! | [`objective`] | [`NonsmoothObjective`], [`Request`] and [`Answer`]: what the method sees; closures as objectives |
-//! | [`constraints`] | [`Polyhedron`]: box and two-sided rows |
-//! | [`nonlinear`] | nonlinear constraints: [`ConstraintKind`], [`ConstrainedFunction`] |
-//! | [`bundle`] | [`BundleTrust`]: configuration, runs |
-//! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
+//! | here | the problem: [`StateSolver`], [`Coderivative`], [`Cost`], and [`ReducedObjective`] for Θ = J∘S |
+//! | here | the objective as the method sees it: [`NonsmoothObjective`], [`Request`], [`Answer`]; [`FnObjective`] |
+//! | here | admissible set and constraints: [`Polyhedron`], [`ConstraintKind`], [`ConstrainedFunction`] |
+//! | here | the method: [`BundleTrust`], [`BundleTrustConfig`], [`Run`] |
+//! | here | its result: [`Report`], [`Termination`], [`Certificate`], [`IterationRecord`]; [`Observer`], [`StopRule`] |
+//! | [`composite`] | Θ = h∘c with a known convex h: outer functions, Jacobians of the outputs |
 //! | [`runs`] | several runs in turn: starts, subspaces, objectives |
 //! | [`verify`] | Taylor tests of any objective |
 //! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
 //! | [`interruption`] | how long loops hear that nobody waits for their result |
-//! | [`error`], [`linalg`] | error types; the vector and matrix types |
 
 /// The version of this crate, for reports.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-pub mod bundle;
 pub mod composite;
-pub mod composite_objective;
-pub mod constrained_function;
-pub mod constraints;
-pub mod error;
 pub mod interruption;
 pub mod journal;
-pub mod linalg;
-pub mod nonlinear;
-pub mod objective;
-pub mod problem;
 pub mod qp;
-pub mod reduced;
-pub mod report;
 pub mod runs;
 pub mod verify;
 
 mod accuracy;
+mod bundle;
 mod checks;
+mod composite_objective;
+mod constrained_function;
+mod constraints;
+mod error;
+mod linalg;
+mod nonlinear;
+mod objective;
 mod panics;
 mod plain;
+mod problem;
+mod reduced;
+mod report;
 
 pub use accuracy::Accuracy;
-pub use bundle::{AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, VariableScaling};
+pub use bundle::{
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, OuterCut, Run, ScaledNorm, VariableScaling,
+};
 pub use composite_objective::{CompositeFunction, CompositeObjective, OutputJacobian};
 pub use constrained_function::ConstrainedFunction;
 pub use constraints::Polyhedron;
@@ -220,6 +220,6 @@ pub use objective::{Answer, Evaluation, FnAnswer, FnObjective, NonsmoothObjectiv
 pub use problem::{Coderivative, Cost, CostGradient, Sensitivity, StateSolver};
 pub use reduced::ReducedObjective;
 pub use report::{
-    Certificate, CertificateCheck, CompositeProof, Counts, IterationRecord, Observer, Origin, ProofCheck, Report,
-    StepKind, StopRule, TablePrinter, Termination, TrialCounts,
+    Certificate, CertificateCheck, CompositeProof, ConstraintCut, ConstraintProof, ConstraintReport, Counts,
+    IterationRecord, Observer, Origin, ProofCheck, Report, StepKind, StopRule, TablePrinter, Termination, TrialCounts,
 };

@@ -11,7 +11,7 @@ use crate::checks::{check_finite, check_size};
 use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
-/// What a nonlinear constraint asks for, and how it may be modelled.
+/// The condition of a nonlinear constraint, and how it may be modelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ConstraintKind {
@@ -74,7 +74,8 @@ impl ConstraintEvaluation {
     /// The constraints whose pieces are functions of outputs; `gradient` is the gradient by the variables for weights
     /// of the outputs.
     pub(crate) fn of_pieces<E>(
-        (count, dimension): (usize, usize),
+        count: usize,
+        dimension: usize,
         pieces: &[OutputPiece],
         mut gradient: impl FnMut(&Vector) -> Result<Vector, E>,
         all: bool,

@@ -53,7 +53,7 @@ pub trait Coderivative: StateSolver {
     ) -> Result<Sensitivity, OracleError>;
 }
 
-/// What a [`Coderivative`] returns for a dual y* at an inexact state y.
+/// An element of the coderivative for a dual y* at an inexact state y, with its error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
     /// One element of D*S(α)(y*), `control_dimension()` entries.

@@ -5,7 +5,7 @@ use crate::checks::check_setting;
 use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
-/// What is known about the convexity of the problem: of Θ on the admissible set, and of its nonlinear constraints.
+/// The declared convexity of the problem: of Θ on the admissible set, and of its nonlinear constraints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

@@ -93,7 +93,7 @@ impl Cut {
         8.0 * f64::EPSILON * self.value.abs().max(terms)
     }
 
-    /// What Θ is at most at the point of an accurate cut.
+    /// An upper bound of Θ at the point of an accurate cut.
     pub(super) fn highest_value(&self) -> f64 {
         self.value + self.error_bound
     }

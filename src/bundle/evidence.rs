@@ -18,7 +18,7 @@ use crate::{Polyhedron, Vector};
 /// not stationary have shares of 0.03 and more; at smooth minima, where nothing cancels, a share of 1e-3 of the slopes
 /// seen leaves 1e-6 of the decrease.
 const SMALL_SHARE: f64 = 1e-3;
-/// What cancels to this share of its terms is zero as far as the multipliers of a subproblem tell.
+/// A sum that cancels to this share of its terms is zero as far as the multipliers of a subproblem tell.
 const CANCELLED_SHARE: f64 = 1e-8;
 /// Subgradients of the center itself that cancel to this share of their terms prove it stationary: away from kinks and
 /// vertices nothing cancels, and where a point is not stationary shares are 0.03 and more.
@@ -26,7 +26,7 @@ const EXACT_SHARE: f64 = 1e-5;
 /// Rounding of a sum, as a share of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// What the aggregate subgradient says about a variable.
+/// The aggregate subgradient along a variable, with the sizes to compare it with.
 #[derive(Debug, Clone, Copy)]
 struct Coordinate {
     /// |z̃_i|.
@@ -107,14 +107,8 @@ impl Evidence {
         Self {
             coordinates: (0..sum.len()).map(coordinate).collect(),
             error: proposal.cut_error + proposal.slack_error,
-            drop: match &state.constraints {
-                Some(constraints) => constraints.merit_drop(),
-                None => state.seen.highest - state.center_value,
-            },
-            drop_from_start: match &state.constraints {
-                Some(constraints) => constraints.merit_drop(),
-                None => state.seen.first - state.center_value,
-            },
+            drop: state.drop_from(state.seen.highest),
+            drop_from_start: state.drop_from(state.start_value),
             distance: if of_outputs {
                 of_tangents
             } else {
@@ -138,7 +132,7 @@ impl Evidence {
         self.coordinates.iter().all(|i| i.slope <= EXACT_SHARE * i.terms)
     }
 
-    /// What cancels in the aggregate subgradient, times how far the variables have moved.
+    /// The terms that cancel in the aggregate subgradient, times how far the variables have moved.
     pub(crate) fn cancelling(&self) -> f64 {
         self.coordinates.iter().map(|i| i.terms * i.moved).sum()
     }
@@ -238,7 +232,7 @@ fn degenerate(state: &BundleState, proposal: &Proposal) -> bool {
             cuts.map(|(cut, multiplier)| multiplier * state.norm.dual_length(&cut.subgradient)).sum()
         }
     };
-    constraints.is_degenerate(&multipliers, (slope, &state.norm), state.length_scale())
+    constraints.is_degenerate(&multipliers, slope, &state.norm, state.length_scale())
 }
 
 /// z̃ and the sum of the absolute values of its terms, from the multipliers and the subgradients as they are.

@@ -10,7 +10,7 @@ use super::run::{Run, without_pattern};
 use crate::report::{Certificate, ConstraintCut, ConstraintProof, Report, Termination};
 use crate::{Accuracy, Vector};
 
-/// What is said of a plateau.
+/// The warning about a plateau.
 const PLATEAU: &str =
     "plateau: the objective is constant around this point; it says nothing of other points, which may be lower";
 
@@ -134,7 +134,7 @@ impl Run<'_, '_> {
         }
         if moved {
             self.proof = None;
-            self.ask(|proposers, at| proposers.recenter(at, None));
+            self.tell(|proposer, at| proposer.recenter(at, None));
         }
     }
 

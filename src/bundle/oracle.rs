@@ -11,7 +11,7 @@ use crate::{Answer, Evaluation, InputError, NonsmoothObjective, OracleError, Req
 /// Numbers beyond this are refused, because sums of their squares could overflow.
 const LARGEST: f64 = 1e150;
 
-/// What an evaluation can end with.
+/// The outcome of an evaluation.
 pub(super) enum OracleResult {
     Answer(Box<Answer<()>>),
     /// Θ = −∞.

@@ -6,7 +6,7 @@ use crate::Accuracy;
 use crate::report::{IterationRecord, Noted, Origin, StepKind};
 use std::time::Instant;
 
-/// What became of an evaluation.
+/// The outcome of an evaluation.
 #[derive(Debug)]
 pub(super) struct Event {
     pub kind: StepKind,

@@ -15,7 +15,7 @@ const MAX_NOISY_DECREASES: f64 = 4.0;
 pub(crate) struct Resolution {
     /// The tolerance times the scale of Θ.
     pub wanted: f64,
-    /// What differences of the values behind the active cuts cannot resolve.
+    /// Decreases that differences of the values behind the active cuts cannot resolve.
     pub rounding: f64,
     /// Noise seen in the values or promised by the oracle and not to be reduced by asking for more accuracy.
     pub noise_level: f64,
@@ -35,7 +35,7 @@ impl Resolution {
         self.wanted + self.rounding
     }
 
-    /// What is nothing beside the wanted decrease, or hidden by rounding.
+    /// A decrease that is negligible beside the wanted one, or hidden by rounding.
     pub(crate) fn negligible(&self) -> f64 {
         NEGLIGIBLE_SHARE * self.wanted + self.rounding
     }

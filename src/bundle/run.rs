@@ -6,7 +6,7 @@ use super::oracle::{Oracle, OracleResult, evaluate};
 use super::proof::{Ending, Proof};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::Proposal;
-use super::proposers::proposer::{Answer as Proposed, Position};
+use super::proposers::proposer::{Answer as Proposed, Position, Proposer};
 use super::record::{Event, record};
 use super::resolution::Resolution;
 use super::state::BundleState;
@@ -134,7 +134,7 @@ impl Run<'_, '_> {
                 let kind = if left.is_some_and(|left| left <= LESS_VIOLATED * violation) {
                     self.state.move_center(accuracy);
                     self.oracle.keep_warm_start();
-                    self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
+                    self.tell(|proposer, at| proposer.recenter(at, known.as_ref()));
                     StepKind::Serious
                 } else {
                     self.state.reject_constraints(false);
@@ -192,6 +192,11 @@ impl Run<'_, '_> {
         answer
     }
 
+    /// Tells all proposers something about the run.
+    pub(super) fn tell(&mut self, news: impl Fn(&mut dyn Proposer, &mut Position<'_>)) {
+        self.ask(|proposers, at| proposers.all().for_each(|proposer| news(proposer, at)));
+    }
+
     /// The set of the subproblems at the present center, where there are nonlinear constraints.
     fn working_set(&mut self) -> Option<Rc<WorkingSet>> {
         let constraints = self.state.constraints.as_deref()?;
@@ -203,7 +208,7 @@ impl Run<'_, '_> {
                 let reach = self.state.length_scale().max(self.state.first_step);
                 let (center, norm) = (&self.state.center, &self.state.norm);
                 let working =
-                    WorkingSet::new(&self.rows.set, constraints, center, (norm, negligible, reach), &mut self.solver);
+                    WorkingSet::new(&self.rows.set, constraints, center, norm, negligible, reach, &mut self.solver);
                 let working = Rc::new(working);
                 self.working = Some((wanted, Rc::clone(&working)));
                 Some(working)
@@ -254,7 +259,7 @@ impl Run<'_, '_> {
     fn leave_known_point(&mut self, proposal: Proposal) -> ControlFlow<Ending> {
         let before = self.state.weight;
         self.state.known_trials += 1;
-        self.ask(|proposers, at| proposers.leave_known_point(at, &proposal));
+        self.tell(|proposer, at| proposer.leave_known_point(at, &proposal));
         let stuck = proposal.origin == Origin::Cuts && self.state.weight == before;
         if stuck || self.state.known_trials >= MAX_KNOWN_TRIALS {
             return Break(self.too_short(proposal));
@@ -290,8 +295,8 @@ impl Run<'_, '_> {
             noise::watch(&mut self.state, self.method.config.convexity, proposal, &evaluation);
             self.learn_slope(&evaluation);
         }
-        let trial = Trial::new(&self.state, proposal, (&evaluation, accurate), known.as_ref());
-        self.ask(|proposers, at| proposers.learn(at, &trial));
+        let trial = Trial::new(&self.state, proposal, &evaluation, accurate, known.as_ref());
+        self.tell(|proposer, at| proposer.learn(at, &trial));
         self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, !accurate);
         let kind = if trial.serious {
             self.state.move_center(accuracy);
@@ -304,7 +309,7 @@ impl Run<'_, '_> {
         } else {
             StepKind::NoDescent
         };
-        self.ask(|proposers, at| proposers.update(at, &trial));
+        self.tell(|proposer, at| proposer.update(at, &trial));
         let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
         record(&mut self.state, proposal, accuracy, event, self.clock);
     }
@@ -355,7 +360,7 @@ impl Run<'_, '_> {
                 self.state.move_center(accuracy);
                 self.oracle.keep_warm_start();
                 self.state.bundle.retain(|cut| cut.id != old);
-                self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
+                self.tell(|proposer, at| proposer.recenter(at, known.as_ref()));
             }
             OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
             OracleResult::Failure(error) => {
@@ -379,7 +384,7 @@ impl Run<'_, '_> {
         let failures = state.failures;
         // The first step from a start at zero is no length of the variables: it follows from Θ, shifts included.
         let close = proposal.step_length <= (CLOSE * state.length_scale()).max(f64::EPSILON * state.first_step);
-        self.ask(|proposers, at| proposers.shorten(at, proposal));
+        self.tell(|proposer, at| proposer.shorten(at, proposal));
         let failure = Some(error.to_string());
         let event = Event { kind: StepKind::Failed, value: None, failure, noted: Noted::Nothing, work: 0 };
         record(&mut self.state, proposal, accuracy, event, self.clock);

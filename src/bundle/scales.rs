@@ -64,7 +64,7 @@ impl BundleState {
     /// The scale of Θ near the center that relative tolerances refer to.
     pub(crate) fn natural_scale(&self, config: &BundleTrustConfig) -> f64 {
         config.objective_scale.unwrap_or_else(|| {
-            let drop = self.drop();
+            let drop = self.drop_from(self.highest_kept());
             let outputs = self.output_variation();
             let mut variation = drop.min(self.linear_variation()).max(outputs.size);
             let size = self.center_value.abs();

@@ -7,8 +7,6 @@ use crate::Vector;
 pub(crate) struct Seen {
     /// The highest value, in units of Θ.
     pub highest: f64,
-    /// The value at the start.
-    pub first: f64,
     /// The largest |g_i| of every variable.
     pub steepest: Vector,
     /// The least and the largest value of every variable at the points that count.
@@ -17,12 +15,12 @@ pub(crate) struct Seen {
 
 impl Seen {
     pub(crate) fn new(point: &Vector, value: f64, subgradient: &Vector) -> Self {
-        Self { highest: value, first: value, steepest: subgradient.abs(), range: (point.clone(), point.clone()) }
+        Self { highest: value, steepest: subgradient.abs(), range: (point.clone(), point.clone()) }
     }
 
     /// Takes in an evaluation. `counts`: whether the point may lie as far as a minimizer; points above the start say
     /// nothing about where a convex Θ is lower.
-    pub(crate) fn add(&mut self, point: &Vector, (value, subgradient): (f64, &Vector), counts: bool) {
+    pub(crate) fn add(&mut self, point: &Vector, value: f64, subgradient: &Vector, counts: bool) {
         self.highest = self.highest.max(value);
         if counts {
             self.range = (self.range.0.inf(point), self.range.1.sup(point));

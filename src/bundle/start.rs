@@ -54,13 +54,14 @@ impl<'o> BundleTrust<'o> {
     ) -> Result<Run<'r, 'o>, OptimizeError> {
         let clock = Instant::now();
         let kinds = objective.constraint_kinds();
-        self.begin(Box::new(WarmStarted::new(objective)), (objective.outer(), kinds), objective.dimension(), x0, clock)
+        self.begin(Box::new(WarmStarted::new(objective)), objective.outer(), kinds, objective.dimension(), x0, clock)
     }
 
     fn begin<'r>(
         &'r mut self,
         mut oracle: Box<dyn Oracle + 'r>,
-        (outer, kinds): (Option<&'r dyn OuterFunction>, &[ConstraintKind]),
+        outer: Option<&'r dyn OuterFunction>,
+        kinds: &[ConstraintKind],
         dimension: usize,
         x0: Vector,
         clock: Instant,
@@ -73,7 +74,7 @@ impl<'o> BundleTrust<'o> {
         let start = admissible_start(&set, &rows, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
         let (state, linearization) =
-            first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, (&rows.set, norm), start)?;
+            first_evaluation(oracle.as_mut(), outer.is_some(), kinds, &self.config, &rows.set, norm, start)?;
         oracle.keep_warm_start();
         let proposers = Proposers::new(outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
@@ -91,7 +92,7 @@ impl<'o> BundleTrust<'o> {
             ways_out: (0, 0),
         };
         let (known, noted) = run.take_linearization(linearization);
-        run.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
+        run.tell(|proposer, at| proposer.recenter(at, known.as_ref()));
         let seconds = clock.elapsed().as_secs_f64();
         if let Some(first) = run.state.history.first_mut() {
             first.seconds = seconds;
@@ -129,9 +130,11 @@ type FirstEvaluation = (BundleState, Linearized);
 /// Evaluates the start and sets up the state.
 fn first_evaluation(
     oracle: &mut dyn Oracle,
-    (structured, kinds): (bool, &[ConstraintKind]),
+    structured: bool,
+    kinds: &[ConstraintKind],
     config: &BundleTrustConfig,
-    (set, norm): (&Polyhedron, ScaledNorm),
+    set: &Polyhedron,
+    norm: ScaledNorm,
     start: Vector,
 ) -> Result<FirstEvaluation, OptimizeError> {
     let accuracy = first_accuracy(config)?;
@@ -146,7 +149,7 @@ fn first_evaluation(
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
-    let known = |found| Box::new(Constraints::new(kinds, (&start, value), found, (&norm, slope)));
+    let known = |found| Box::new(Constraints::new(kinds, &start, value, found, &norm, slope));
     let constraints = constraints.as_ref().map(known);
     let (point, seen) = (start.clone(), Seen::new(&start, value, &subgradient));
     let cut =
@@ -166,8 +169,6 @@ fn first_evaluation(
         first_weight: weight,
         floor_share: 1.0,
         first_step,
-        streak: 0,
-        variation: None,
         center_accuracy: accuracy.tolerance(),
         nonconvex: false,
         noise: 0.0,

@@ -34,7 +34,7 @@ pub(crate) struct Lengths {
     pub squared: f64,
 }
 
-/// What the outputs c of a composite Θ = h(c) tell about its scale at a center.
+/// The scale of a composite Θ = h(c) at a center, from its outputs c.
 #[derive(Debug, Clone)]
 pub(crate) struct OutputScales {
     /// Σ_i |w_i| |G_ik| for every variable k: the terms that cancel in Gᵀw.
@@ -64,11 +64,6 @@ pub(crate) struct BundleState {
     /// at the minimum.
     pub floor_share: f64,
     pub first_step: f64,
-    /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), of the plain cuts, counted from the one
-    /// that last changed the weight.
-    pub streak: i64,
-    /// ε_v, an estimate of how far the model varies; none means unlimited.
-    pub variation: Option<f64>,
     /// Relative accuracy with which the center was last asked for.
     pub center_accuracy: f64,
     /// Whether a pair of cuts ever proved Θ nonconvex.
@@ -83,9 +78,9 @@ pub(crate) struct BundleState {
     pub known_trials: usize,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
-    /// What the outputs behind Θ tell about its scale, if they are known at the center.
+    /// The scale of Θ from its outputs, if these are known at the center.
     pub output_scales: Option<OutputScales>,
-    /// What has been seen of the nonlinear constraints; none where there are none.
+    /// The evaluations of the nonlinear constraints; none without such constraints.
     pub constraints: Option<Box<Constraints>>,
     /// The lengths that belong to a center, with its identity.
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
@@ -167,8 +162,8 @@ impl BundleState {
     ) {
         let size = config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         // The objective of an infeasible start may lie below all that is feasible.
-        let counts = self.constraints.is_some() || evaluation.value <= self.seen.first;
-        self.seen.add(point, (evaluation.value, &evaluation.subgradient), counts);
+        let counts = self.constraints.is_some() || evaluation.value <= self.start_value;
+        self.seen.add(point, evaluation.value, &evaluation.subgradient, counts);
         if let (Some(constraints), Some(found)) = (&mut self.constraints, &evaluation.constraints) {
             constraints.add(point, evaluation.value, found, &self.norm);
         }
@@ -240,15 +235,17 @@ impl BundleState {
         (self.center_id, self.next_id) = (self.next_id, self.next_id + 1);
     }
 
-    /// The decrease of the run: from the highest value at the start or in the bundle, of the merit where there are
-    /// constraints.
-    pub(crate) fn drop(&self) -> f64 {
+    /// The highest value at the start and in the bundle. The scale of Θ refers to it rather than to the highest value of
+    /// the run: one value far above all that the bundle keeps would make large decreases count as small.
+    pub(crate) fn highest_kept(&self) -> f64 {
+        self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max)
+    }
+
+    /// The decrease of the run from a value to the center; from the highest merit seen where there are constraints.
+    pub(crate) fn drop_from(&self, value: f64) -> f64 {
         match &self.constraints {
             Some(constraints) => constraints.merit_drop(),
-            None => {
-                let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
-                (highest - self.center_value).max(0.0)
-            }
+            None => (value - self.center_value).max(0.0),
         }
     }
 

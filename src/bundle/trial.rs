@@ -25,7 +25,8 @@ impl<'a> Trial<'a> {
     pub(super) fn new(
         state: &BundleState,
         proposal: &'a Proposal,
-        (evaluation, accurate): (&'a Evaluation<()>, bool),
+        evaluation: &'a Evaluation<()>,
+        accurate: bool,
         linearization: Option<&'a Linearization>,
     ) -> Self {
         let mut comparison = Comparison::new(state, proposal, evaluation.value, &evaluation.subgradient);

@@ -27,7 +27,7 @@ const MAX_SLOPE_SHARE: f64 = 1e-3;
 /// whose curvature rounding hides look like kinks from 1e-9 on.
 const MAX_ROUNDING_SHARE: f64 = 1e-11;
 
-/// What the evidence at a center amounts to.
+/// The classification of the evidence at a center.
 pub(crate) enum Verdict {
     /// The run may end.
     End(Termination),
@@ -85,27 +85,27 @@ fn judged(at: &Position<'_>, evidence: &Evidence) -> Verdict {
     }
 }
 
-/// What the cuts next to a center say that all cuts together call stationary.
+/// The classification of a center, which all cuts together call stationary, by the cuts next to it.
 pub(crate) enum Near {
-    /// They promise as little.
+    /// The cuts next to the center promise as little as all cuts.
     Confirmed,
-    /// They promise more, although their subgradients nearly cancel: only the curvature of Θ, which they do not show,
+    /// Those cuts promise more, although their subgradients nearly cancel: only the curvature of Θ, which cuts do not show,
     /// bounds what is left.
     Falls,
-    /// Their subgradients do not cancel.
+    /// The subgradients of those cuts do not cancel.
     Open,
 }
 
 /// Classifies the cuts next to a center by their subproblem at the weight of the run.
 pub(crate) fn near_verdict(
-    at: &Position<'_>,
+    center_value: f64,
     resolution: &Resolution,
     evidence: &Evidence,
     proposal: &Proposal,
 ) -> Near {
     let remaining = evidence.remaining();
     let hidden = resolution.noise().is_some() || resolution.rounding > 10.0 * resolution.wanted;
-    let least = evidence.drop.min(at.state.center_value.abs());
+    let least = evidence.drop.min(center_value.abs());
     let resolved = resolution.noise().is_none() && resolution.rounding <= MAX_ROUNDING_SHARE * evidence.cancelling();
     if resolved
         && evidence.cancels()

@@ -3,7 +3,7 @@
 use crate::checks::{check_finite, check_size};
 use crate::{Accuracy, InputError, Matrix, Vector};
 
-/// What the engine asks of a composite objective besides value and subgradient.
+/// The request for outputs and Jacobian of a composite objective, besides value and subgradient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearizationRequest {
     /// Relative accuracy of the Jacobian.
@@ -16,7 +16,7 @@ pub struct LinearizationRequest {
 const JACOBIAN_ACCURACY: f64 = 1e-4;
 
 impl LinearizationRequest {
-    /// What the engine asks for, at points where Θ is at most the value given.
+    /// The request of the engine, for points where Θ is at most the value given.
     pub(crate) fn below(below: f64) -> Self {
         let accuracy = Accuracy::relative(JACOBIAN_ACCURACY).unwrap_or(Accuracy::TIGHTEST);
         Self { accuracy, below }
@@ -46,7 +46,7 @@ pub struct InactiveConstraints {
     pub jacobian: Matrix,
 }
 
-/// What an answer says about outputs and Jacobian.
+/// Outputs and Jacobian in an answer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Linearized {
     /// Nothing: the request did not ask for them, or asked only where Θ is lower.

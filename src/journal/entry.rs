@@ -27,7 +27,7 @@ pub struct Entry {
     pub restarted_from: Option<usize>,
     /// Seconds of computation since the start of the run, earlier invocations included.
     pub seconds: f64,
-    /// What came of it.
+    /// The recorded answer of the oracle.
     pub answer: RecordedAnswer,
 }
 
@@ -49,11 +49,11 @@ impl From<LinearizationRequest> for RecordedRequest {
     }
 }
 
-/// What came of a request for outputs and Jacobian.
+/// The recorded answer to a request for outputs and Jacobian.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RecordedLinearization {
-    /// They have a file of their own.
+    /// Outputs and Jacobian are in the file `linearization_K.bin`.
     Stored,
     /// The reason why they could not be had.
     Failed(String),
@@ -103,7 +103,7 @@ impl RecordedConstraints {
     }
 }
 
-/// What came of an evaluation.
+/// The recorded answer of an evaluation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]

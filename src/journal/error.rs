@@ -23,7 +23,7 @@ pub enum JournalError {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The reason for the refusal.
         reason: String,
     },
     /// The journal has another version of the format.

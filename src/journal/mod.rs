@@ -61,6 +61,6 @@ mod restart_files;
 mod writer;
 
 pub use contents::Journal;
-pub use entry::{Entry, RecordedAnswer, RecordedLinearization, RecordedRequest};
+pub use entry::{Entry, RecordedAnswer};
 pub use error::JournalError;
 pub use journaled::{Journaled, RestartData};

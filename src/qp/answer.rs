@@ -3,7 +3,8 @@
 use super::certificate::kkt_residual;
 use super::kernels::{dot, dot_terms};
 use super::problem::{EpigraphQp, QpMethod, QpSolution};
-use super::working_set::{Active, Member};
+use super::sides::Member;
+use super::working_set::Active;
 use crate::Vector;
 
 /// Largest residual with which an answer is returned at once; a worse one is tried again by other means.

@@ -11,15 +11,46 @@
 
 use crate::Vector;
 
-use super::kernels::{add_scaled, dot};
-use super::working_set::{Active, Member, Place, Side, WorkingSet};
+use super::kernels::dot;
+use super::sides::Normal;
+use super::working_set::{Active, FirstBlock, Place, Side, WorkingSet};
 
-/// Changes that lead to the equality solution.
-struct Correction {
-    general: Vec<f64>,
-    fixed: Vec<f64>,
-    step: Vector,
-    epigraph: f64,
+/// Relative residual at which refinement stops.
+const REFINED: f64 = 4e-16;
+/// Largest number of passes spent on refinement after the last member has left.
+const REFINEMENT_PASSES: usize = 5;
+/// Residual of a stationarity equation, relative to its terms, that is rounding.
+const ROUNDING: f64 = 2e-15;
+
+/// Moves to the equality solution; on return all multipliers have their right sign.
+pub(super) fn solve_equalities(set: &mut WorkingSet<'_>) {
+    let mut full_passes = 0;
+    let mut previous = f64::INFINITY;
+    loop {
+        set.measure();
+        let residuals = Residuals::new(set);
+        let stalled = residuals.size > 0.5 * previous || full_passes >= REFINEMENT_PASSES;
+        if full_passes > 0 && (residuals.size <= REFINED || stalled) {
+            break;
+        }
+        if full_passes > 0 {
+            previous = residuals.size;
+        }
+        let correction = Correction::new(set, residuals);
+        match correction.first_block(set) {
+            Some((length, place)) => {
+                correction.apply(set, length);
+                set.release(place);
+                full_passes = 0;
+                previous = f64::INFINITY;
+            }
+            None => {
+                correction.apply(set, 1.0);
+                set.place_fixed();
+                full_passes += 1;
+            }
+        }
+    }
 }
 
 /// Residuals of the equality system at the current point.
@@ -34,207 +65,136 @@ struct Residuals {
     size: f64,
 }
 
-/// Relative residual at which refinement stops.
-const REFINED: f64 = 4e-16;
-/// Largest number of passes spent on refinement after the last member has left.
-const REFINEMENT_PASSES: usize = 5;
-/// Residual of a stationarity equation, relative to its terms, that is rounding.
-const ROUNDING: f64 = 2e-15;
-
-impl WorkingSet<'_> {
-    /// Moves to the equality solution; on return all multipliers have their right sign.
-    pub(super) fn solve_equalities(&mut self) {
-        let mut full_passes = 0;
-        let mut previous = f64::INFINITY;
-        loop {
-            self.measure();
-            let residuals = self.residuals();
-            let stalled = residuals.size > 0.5 * previous || full_passes >= REFINEMENT_PASSES;
-            if full_passes > 0 && (residuals.size <= REFINED || stalled) {
-                break;
-            }
-            if full_passes > 0 {
-                previous = residuals.size;
-            }
-            let correction = self.correction(residuals);
-            match self.first_block(&correction) {
-                Some((length, place)) => {
-                    self.advance(&correction, length);
-                    self.release(place);
-                    full_passes = 0;
-                    previous = f64::INFINITY;
-                }
-                None => {
-                    self.advance(&correction, 1.0);
-                    self.place_fixed();
-                    full_passes += 1;
-                }
-            }
-        }
-    }
-
-    /// Sets d to the minimiser that belongs to the multipliers of the columns, v to 0.
-    pub(super) fn place_step(&mut self) {
-        let mut step = Vector::zeros(self.qp.dimension());
-        for active in &self.general {
-            self.add_gradient(step.as_mut_slice(), active.multiplier, active.member);
-        }
-        self.coordinates.minimiser(&mut step);
-        self.step = step;
-        self.epigraph = 0.0;
-    }
-
-    /// Puts fixed coordinates on their bounds without rounding.
-    fn place_fixed(&mut self) {
-        for k in 0..self.fixed.len() {
-            if let Some(active) = self.fixed[k] {
-                self.step[k] = self.held_value(&active);
-            }
-        }
-    }
-
-    fn add_gradient(&self, sum: &mut [f64], factor: f64, member: Member) {
-        match (member, self.gradient(member)) {
-            (_, Some(gradient)) => add_scaled(sum, factor, gradient),
-            (Member::Bound(k), None) => sum[k] += factor,
-            (_, None) => {}
-        }
-    }
-
-    fn residuals(&self) -> Residuals {
-        let sides: Vec<f64> =
-            self.general.iter().map(|active| self.held_value(active) - self.value(active.member)).collect();
-        let deficit = 1.0 - self.cut_sum();
+impl Residuals {
+    fn new(set: &WorkingSet<'_>) -> Self {
+        let residual = |active: &Active| set.held_value(active) - set.value(active.member);
+        let sides: Vec<f64> = set.general.iter().map(residual).collect();
+        let deficit = 1.0 - set.cut_sum();
         let mut worst = if deficit.abs() > 4.0 * f64::EPSILON { deficit.abs() } else { 0.0 };
-        for (active, residual) in self.general.iter().zip(&sides).filter(|(_, residual)| **residual != 0.0) {
-            let size = match active.member {
-                Member::Cut(_) => self.smallest_cut_size,
-                _ => self.size(active.member, self.held_value(active)),
+        for (active, residual) in set.general.iter().zip(&sides).filter(|(_, residual)| **residual != 0.0) {
+            let size = if active.member.is_cut() {
+                set.smallest_cut_size
+            } else {
+                set.size(active.member, set.held_value(active))
             };
             worst = worst.max(residual.abs() / size);
         }
-        Residuals { step: self.step_residual(), sides, deficit, size: worst }
+        Self { step: step_residual(set), sides, deficit, size: worst }
     }
+}
 
-    /// q: what the stationarity equations ask of d. Entries of r that are rounding count as zero.
-    fn step_residual(&self) -> Vector {
-        let mut sum = self.qp.metric.apply(&self.step);
-        let mut terms = sum.abs();
-        for active in &self.general {
-            self.add_gradient(sum.as_mut_slice(), active.multiplier, active.member);
-            match (active.member, self.gradient(active.member)) {
-                (_, Some(gradient)) => add_scaled_terms(terms.as_mut_slice(), active.multiplier, gradient),
-                (Member::Bound(k), None) => terms[k] += active.multiplier.abs(),
-                (_, None) => {}
-            }
+/// q: what the stationarity equations ask of d. Entries of r that are rounding count as zero.
+fn step_residual(set: &WorkingSet<'_>) -> Vector {
+    let mut sum = set.sides.qp.metric.apply(&set.step);
+    let mut terms = sum.abs();
+    for active in &set.general {
+        set.sides.add_normal(sum.as_mut_slice(), active.multiplier, active.member);
+        match set.sides.normal(active.member) {
+            Normal::Gradient(gradient) => add_scaled_terms(terms.as_mut_slice(), active.multiplier, gradient),
+            Normal::Axis(k) => terms[k] += active.multiplier.abs(),
         }
-        for (sum, terms) in sum.iter_mut().zip(&terms) {
-            if sum.abs() <= ROUNDING * terms {
-                *sum = 0.0;
-            }
-        }
-        self.coordinates.minimiser(&mut sum);
-        for (k, fixed) in self.fixed.iter().enumerate() {
-            if let Some(active) = fixed {
-                sum[k] = self.held_value(active) - self.step[k];
-            }
-        }
-        sum
     }
+    for (sum, terms) in sum.iter_mut().zip(&terms) {
+        if sum.abs() <= ROUNDING * terms {
+            *sum = 0.0;
+        }
+    }
+    set.coordinates.minimiser(&mut sum);
+    for (k, fixed) in set.fixed.iter().enumerate() {
+        if let Some(active) = fixed {
+            sum[k] = set.held_value(active) - set.step[k];
+        }
+    }
+    sum
+}
 
-    fn correction(&self, residuals: Residuals) -> Correction {
-        let n = self.qp.dimension();
+/// Changes that lead to the equality solution.
+struct Correction {
+    general: Vec<f64>,
+    fixed: Vec<f64>,
+    step: Vector,
+    epigraph: f64,
+}
+
+impl Correction {
+    fn new(set: &WorkingSet<'_>, residuals: Residuals) -> Self {
         let Residuals { mut step, sides: mut general, deficit, .. } = residuals;
-        for (entry, active) in general.iter_mut().zip(&self.general) {
-            *entry -= match (active.member, self.gradient(active.member)) {
-                (_, Some(gradient)) => dot(gradient, step.as_slice()),
-                (Member::Bound(k), None) => step[k],
-                (_, None) => 0.0,
-            };
+        for (entry, active) in general.iter_mut().zip(&set.general) {
+            *entry -= set.sides.product(active.member, step.as_slice());
         }
-        let mut cut_row = self.factor.orthogonal_row(n);
-        cut_row.iter_mut().for_each(|entry| *entry /= self.cut_entry);
-        self.factor.solve_transposed(&mut general);
+        let cut_entry = set.sides.cut_entry;
+        let mut cut_row = set.factor.orthogonal_row(step.len());
+        cut_row.iter_mut().for_each(|entry| *entry /= cut_entry);
+        set.factor.solve_transposed(&mut general);
         let shift = -(deficit + dot(&cut_row, &general)) / dot(&cut_row, &cut_row);
         general.iter_mut().zip(&cut_row).for_each(|(y, h)| *y = -*y - h * shift);
-        self.factor.solve(&mut general);
-        self.keep_only_cut(&mut general, deficit);
-        let mut reply = Vector::zeros(n);
-        for (active, change) in self.general.iter().zip(&general) {
-            self.add_gradient(reply.as_mut_slice(), *change, active.member);
-        }
-        self.coordinates.minimiser(&mut reply);
+        set.factor.solve(&mut general);
+        keep_only_cut(&set.general, &mut general, deficit);
+        let mut reply = Vector::zeros(step.len());
+        set.add_normals(reply.as_mut_slice(), general.iter().copied());
+        set.coordinates.minimiser(&mut reply);
         for (k, reply) in reply.iter().enumerate() {
-            if self.fixed[k].is_none() {
+            if set.fixed[k].is_none() {
                 step[k] += reply;
             }
         }
-        let fixed = self.fixed_correction(&general);
-        Correction { general, fixed, step, epigraph: shift + self.cut_entry * self.cut_entry * deficit }
-    }
-
-    /// The only cut held does not leave: its multiplier is one. Where v is large beside the square of its column,
-    /// rounding may change that multiplier by more than one. What the other changes owe to that rounding, later passes
-    /// repair.
-    fn keep_only_cut(&self, changes: &mut [f64], deficit: f64) {
-        let mut cuts = self.general.iter().zip(changes).filter(|(active, _)| matches!(active.member, Member::Cut(_)));
-        if let (Some((active, change)), None) = (cuts.next(), cuts.next())
-            && block_length(active, *change).is_some()
-        {
-            *change = deficit;
-        }
-    }
-
-    /// Changes of the multipliers of fixed coordinates, from their stationarity equations.
-    fn fixed_correction(&self, general: &[f64]) -> Vec<f64> {
-        if self.fixed.iter().all(Option::is_none) {
-            return Vec::new();
-        }
-        let mut target = Vector::zeros(self.qp.dimension());
-        for (active, change) in self.general.iter().zip(general) {
-            self.add_gradient(target.as_mut_slice(), active.multiplier + change, active.member);
-        }
-        let one = |(k, fixed): (usize, &Option<Active>)| {
-            fixed.as_ref().map_or(0.0, |active| {
-                -(self.qp.metric.diagonal_entry(k) * self.held_value(active) + target[k]) - active.multiplier
-            })
-        };
-        self.fixed.iter().enumerate().map(one).collect()
+        let fixed = fixed_correction(set, &general);
+        Self { general, fixed, step, epigraph: shift + cut_entry * cut_entry * deficit }
     }
 
     /// Step length and place of the first multiplier that would change its sign.
-    fn first_block(&self, correction: &Correction) -> Option<(f64, Place)> {
-        let mut first: Option<(f64, Place)> = None;
-        let mut consider = |active: &Active, change: f64, place: Place| {
-            if let Some(length) = block_length(active, change)
-                && first.is_none_or(|(shortest, _)| length < shortest)
-            {
-                first = Some((length, place));
-            }
-        };
-        for (position, (active, change)) in self.general.iter().zip(&correction.general).enumerate() {
-            consider(active, *change, Place::Column(position));
+    fn first_block(&self, set: &WorkingSet<'_>) -> Option<(f64, Place)> {
+        let mut first = FirstBlock::default();
+        for (position, (active, change)) in set.general.iter().zip(&self.general).enumerate() {
+            first.consider(block_length(active, *change), Place::Column(position));
         }
-        for (k, change) in correction.fixed.iter().enumerate() {
-            if let Some(active) = &self.fixed[k] {
-                consider(active, *change, Place::Coordinate(k));
+        for (k, change) in self.fixed.iter().enumerate() {
+            if let Some(active) = &set.fixed[k] {
+                first.consider(block_length(active, *change), Place::Coordinate(k));
             }
         }
-        first
+        first.0
     }
 
-    fn advance(&mut self, correction: &Correction, length: f64) {
-        for (active, change) in self.general.iter_mut().zip(&correction.general) {
-            active.multiplier += length * change;
+    /// Moves along the correction by a share of it.
+    fn apply(&self, set: &mut WorkingSet<'_>, share: f64) {
+        for (active, change) in set.general.iter_mut().zip(&self.general) {
+            active.multiplier += share * change;
         }
-        for (active, change) in self.fixed.iter_mut().zip(&correction.fixed) {
+        for (active, change) in set.fixed.iter_mut().zip(&self.fixed) {
             if let Some(active) = active {
-                active.multiplier += length * change;
+                active.multiplier += share * change;
             }
         }
-        self.step.axpy(length, &correction.step, 1.0);
-        self.epigraph += length * correction.epigraph;
+        set.step.axpy(share, &self.step, 1.0);
+        set.epigraph += share * self.epigraph;
     }
+}
+
+/// The only cut held does not leave: its multiplier is one. Where v is large beside the square of its column, rounding
+/// may change that multiplier by more than one. What the other changes owe to that rounding, later passes repair.
+fn keep_only_cut(general: &[Active], changes: &mut [f64], deficit: f64) {
+    let mut cuts = general.iter().zip(changes).filter(|(active, _)| active.member.is_cut());
+    if let (Some((active, change)), None) = (cuts.next(), cuts.next())
+        && block_length(active, *change).is_some()
+    {
+        *change = deficit;
+    }
+}
+
+/// Changes of the multipliers of fixed coordinates, from their stationarity equations.
+fn fixed_correction(set: &WorkingSet<'_>, general: &[f64]) -> Vec<f64> {
+    if set.fixed.iter().all(Option::is_none) {
+        return Vec::new();
+    }
+    let mut target = Vector::zeros(set.step.len());
+    set.add_normals(target.as_mut_slice(), set.general.iter().zip(general).map(|(active, c)| active.multiplier + c));
+    let one = |(k, fixed): (usize, &Option<Active>)| {
+        fixed.as_ref().map_or(0.0, |active| {
+            -(set.sides.qp.metric.diagonal_entry(k) * set.held_value(active) + target[k]) - active.multiplier
+        })
+    };
+    set.fixed.iter().enumerate().map(one).collect()
 }
 
 /// Part of a change in [0, 1) after which the multiplier reaches zero, if it would pass it.

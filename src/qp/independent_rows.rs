@@ -34,7 +34,7 @@ pub(crate) struct IndependentRows {
 /// An equality row under work.
 struct Row {
     number: usize,
-    /// What is left of it, of length 1 at the start.
+    /// The part of the row outside the span of the others, of length 1 at the start.
     rest: Vec<f64>,
     side: f64,
     /// Size of the terms of the side.

@@ -16,7 +16,8 @@ use crate::{Matrix, Vector};
 use super::answer::assemble;
 use super::kernels::norm;
 use super::problem::{EpigraphQp, QpError, QpMethod, QpSolution};
-use super::working_set::{Active, Member, Side};
+use super::sides::Member;
+use super::working_set::{Active, Side};
 
 /// Answer of the interior-point method and the members it found active.
 pub(super) struct InteriorAnswer {
@@ -140,7 +141,7 @@ fn scaled_sides(qp: &EpigraphQp<'_>, weights: &Vector, length: f64) -> Vec<Scale
     for (j, (slope, &offset)) in qp.slopes.iter().zip(qp.offsets).enumerate() {
         let mut normal: Vec<(usize, f64)> = (0..n).map(|k| (k, scaled(slope[k], k))).collect();
         normal.push((n, -length * length));
-        push_sides(&mut sides, Member::Cut(j), &normal, (f64::NEG_INFINITY, offset));
+        push_sides(&mut sides, Member::Cut(j), &normal, f64::NEG_INFINITY, offset);
     }
     push_set(&mut sides, qp.rows, (qp.row_lower, qp.row_upper), (qp.lower, qp.upper), scaled);
     sides
@@ -157,15 +158,15 @@ pub(crate) fn push_set(
     for (i, row) in rows.row_iter().enumerate() {
         let entries = row.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
         let normal: Vec<(usize, f64)> = entries.map(|(k, entry)| (k, scaled(*entry, k))).collect();
-        push_sides(sides, Member::Row(i), &normal, (of_rows.0[i], of_rows.1[i]));
+        push_sides(sides, Member::Row(i), &normal, of_rows.0[i], of_rows.1[i]);
     }
     for k in 0..rows.ncols() {
-        push_sides(sides, Member::Bound(k), &[(k, scaled(1.0, k))], (bounds.0[k], bounds.1[k]));
+        push_sides(sides, Member::Bound(k), &[(k, scaled(1.0, k))], bounds.0[k], bounds.1[k]);
     }
 }
 
 /// The finite sides of an interval, divided by the norm of the normal.
-fn push_sides(sides: &mut Vec<ScaledSide>, member: Member, normal: &[(usize, f64)], (lower, upper): (f64, f64)) {
+fn push_sides(sides: &mut Vec<ScaledSide>, member: Member, normal: &[(usize, f64)], lower: f64, upper: f64) {
     let size = normal.iter().map(|(_, a)| a * a).sum::<f64>().sqrt();
     let divisor = if size > 0.0 { size } else { 1.0 };
     let mut push = |side: Side, sign: f64, bound: f64| {

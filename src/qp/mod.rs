@@ -20,6 +20,7 @@ mod correction;
 #[cfg(feature = "interior-point")]
 mod dense;
 mod equality_step;
+mod exchange;
 mod factor;
 mod gram;
 #[cfg(test)]
@@ -40,6 +41,7 @@ mod problem;
 #[cfg(feature = "interior-point")]
 pub(crate) mod program;
 mod projection;
+mod sides;
 mod solver;
 mod triangular;
 mod working_set;

@@ -13,7 +13,7 @@ use crate::{Matrix, Vector};
 /// Corrections: a second one removes what rounding left in the first.
 const CORRECTIONS: usize = 2;
 
-/// What is taken to hold at the optimum.
+/// The absolute values and the sides that are taken to vanish at the optimum.
 pub(super) struct Guess {
     /// Which of the absolute values vanish.
     pub(super) vanishing: Vec<bool>,
@@ -30,7 +30,7 @@ struct Equations<'a> {
     sides: Vec<usize>,
     /// The rows of both, as columns.
     columns: Matrix,
-    /// What the rows must give.
+    /// The right-hand side of the rows.
     targets: Vector,
 }
 

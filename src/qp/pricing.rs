@@ -1,7 +1,7 @@
 //! Pricing: the violated side farthest from the current step.
 
-use super::kernels::dot;
-use super::working_set::{Member, Side, WorkingSet};
+use super::sides::Member;
+use super::working_set::{Side, WorkingSet};
 
 /// A side counts as satisfied if its excess is below this share of its size.
 const SATISFIED: f64 = 2e-14;
@@ -20,40 +20,36 @@ pub(super) struct Violation {
     distance: f64,
 }
 
-impl WorkingSet<'_> {
+impl Violation {
     /// The violated side of largest distance among those not skipped.
-    pub(super) fn most_violated(&self, skipped: &[Member]) -> Option<Violation> {
-        let mut worst: Option<Violation> = None;
-        let mut consider = |member: Member, value: f64, norm: f64| {
-            let (lower, upper) = self.interval(member);
-            let (excess, side) =
-                if value > upper { (value - upper, Side::Upper) } else { (lower - value, Side::Lower) };
-            if excess <= 0.0 || worst.is_some_and(|worst| excess <= worst.distance * norm) || skipped.contains(&member)
-            {
+    pub(super) fn largest(set: &WorkingSet<'_>, skipped: &[Member]) -> Option<Self> {
+        let (sides, mut largest) = (&set.sides, None);
+        let mut consider = |member: Member, norm: f64| {
+            let (value, (lower, upper)) = (set.value(member), sides.interval(member));
+            let (excess, side, bound) =
+                if value > upper { (value - upper, Side::Upper, upper) } else { (lower - value, Side::Lower, lower) };
+            let is_less = |known: Self| excess <= known.distance * norm;
+            if excess <= 0.0 || largest.is_some_and(is_less) || skipped.contains(&member) {
                 return;
             }
-            let bound = if side == Side::Upper { upper } else { lower };
-            let own_size = self.size(member, bound);
-            let size = if matches!(member, Member::Cut(_)) { own_size.min(self.smallest_cut_size) } else { own_size };
-            let satisfied = (SATISFIED * size).max(ROUNDING * self.terms(member, bound));
-            let relative = excess / self.data_size(member, bound);
-            if excess > satisfied && !self.is_held(member) {
+            let own_size = set.size(member, bound);
+            let size = if member.is_cut() { own_size.min(set.smallest_cut_size) } else { own_size };
+            let satisfied = (SATISFIED * size).max(ROUNDING * set.terms(member, bound));
+            let relative = excess / set.data_size(member, bound);
+            if excess > satisfied && !set.is_held(member) {
                 let side = if lower == upper { Side::Both } else { side };
-                worst = Some(Violation { member, side, relative, distance: excess / norm });
+                largest = Some(Self { member, side, relative, distance: excess / norm });
             }
         };
-        let cuts = self.qp.slopes.len();
-        for (j, slope) in self.qp.slopes.iter().enumerate() {
-            let value = dot(slope.as_slice(), self.step.as_slice()) - self.epigraph;
-            consider(Member::Cut(j), value, self.norms[j].hypot(self.cut_entry));
+        for member in (0..sides.qp.slopes.len()).map(Member::Cut) {
+            consider(member, sides.norm(member).hypot(sides.cut_entry));
         }
-        for i in 0..self.qp.rows.nrows() {
-            let norm = self.norms[cuts + i].max(f64::MIN_POSITIVE);
-            consider(Member::Row(i), self.value(Member::Row(i)), norm);
+        for member in (0..sides.qp.rows.nrows()).map(Member::Row) {
+            consider(member, sides.norm(member).max(f64::MIN_POSITIVE));
         }
-        for k in 0..self.qp.dimension() {
-            consider(Member::Bound(k), self.step[k], self.qp.metric.diagonal_entry(k).sqrt().recip());
+        for member in (0..sides.qp.dimension()).map(Member::Bound) {
+            consider(member, sides.norm(member));
         }
-        worst
+        largest
     }
 }

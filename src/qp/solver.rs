@@ -7,7 +7,8 @@ use super::gram::{Gram, GramMemory};
 #[cfg(feature = "interior-point")]
 use super::interior_point;
 use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
-use super::working_set::{Active, CutEntry, Member, Side, WorkingSet};
+use super::sides::{CutEntry, Member, Sides};
+use super::working_set::{Active, Side, WorkingSet};
 
 /// Largest residual with which an answer is returned at all.
 const REQUIRED: f64 = 1e-10;
@@ -53,7 +54,7 @@ enum Identity {
     Bound(usize),
 }
 
-/// What one run of the active-set method left behind.
+/// The result of one run of the active-set method.
 struct Attempt {
     outcome: ActiveSetEnd,
     solution: QpSolution,
@@ -93,11 +94,11 @@ impl EpigraphQpSolver {
         let cold = scales.iter().map(|scale| (&[] as &[Active], *scale));
         let mut best: Option<Attempt> = None;
         let mut contradictions = vec![];
-        for start in first.into_iter().chain(cold) {
-            let attempt = run_active_set(qp, &coordinates, start);
+        for (start, cut_entry) in first.into_iter().chain(cold) {
+            let attempt = run_active_set(qp, &coordinates, start, cut_entry);
             self.counts.pivots += attempt.solution.pivots;
             let done = attempt.outcome == ActiveSetEnd::Solved && attempt.solution.kkt_residual <= WANTED;
-            if let (ActiveSetEnd::Infeasible { violation }, true) = (attempt.outcome, start.0.is_empty()) {
+            if let (ActiveSetEnd::Infeasible { violation }, true) = (attempt.outcome, start.is_empty()) {
                 contradictions.push(violation);
             }
             keep_better(&mut best, attempt);
@@ -174,7 +175,7 @@ impl EpigraphQpSolver {
             (Err(_), Some(known)) if known.outcome == ActiveSetEnd::Solved => return Ok(known),
             (Err(error), _) => return Err(error),
         };
-        let refined = run_active_set(qp, coordinates, (&answer.actives, CutEntry::Median));
+        let refined = run_active_set(qp, coordinates, &answer.actives, CutEntry::Median);
         self.counts.pivots += refined.solution.pivots;
         keep_better(&mut best, refined);
         let outcome = ActiveSetEnd::Stalled;
@@ -219,8 +220,9 @@ fn keep_better(best: &mut Option<Attempt>, attempt: Attempt) {
     }
 }
 
-fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, (warm, cut_entry): (&[Active], CutEntry)) -> Attempt {
-    let mut set = WorkingSet::new(qp, coordinates, cut_entry);
+/// Runs the active-set method from the members given.
+fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, warm: &[Active], cut_entry: CutEntry) -> Attempt {
+    let mut set = WorkingSet::new(Sides::new(qp, cut_entry), coordinates);
     set.start(warm);
     let outcome = set.run();
     let actives: Vec<Active> = set.actives().copied().collect();

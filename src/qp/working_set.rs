@@ -1,4 +1,4 @@
-//! The working set: which cuts, rows and bounds are held active, with their multipliers and factors.
+//! The working set: which cuts, rows and bounds are held active, with their multipliers and factors, and the step.
 //!
 //! ```text
 //! column of a member:  ã = (L⁻¹ normal, c s),   s = 1 for a cut, 0 otherwise
@@ -9,21 +9,12 @@
 //! column: it fixes its coordinate.
 
 use crate::Vector;
-use crate::linalg::upper_median;
 
-use super::certificate::{LENGTH_SHARE, SIDE_SHARE, largest_side};
+use super::certificate::{LENGTH_SHARE, SIDE_SHARE};
 use super::coordinates::Coordinates;
 use super::factor::{Factor, Split};
-use super::kernels::{dot, dot_terms};
-use super::problem::EpigraphQp;
-
-/// One inequality or equality of the QP.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Member {
-    Cut(usize),
-    Row(usize),
-    Bound(usize),
-}
+use super::kernels::dot_terms;
+use super::sides::{Member, Normal, Sides};
 
 /// The side at which a member is active; cuts have an upper side only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,28 +41,9 @@ pub(super) enum Place {
     Coordinate(usize),
 }
 
-/// The extra entry c of a cut's column (g̃, c). Columns lose the digits of what is small beside c, and of c where it is
-/// small itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum CutEntry {
-    /// The median norm of the cuts.
-    Median,
-    /// The geometric mean of the median and the least norm: where most cuts are far steeper than the active ones.
-    Lower,
-    /// The geometric mean of the median and the largest norm: where the active cuts are far steeper than most, and
-    /// beside them a side looks as if it depended on those held.
-    Upper,
-}
-
 pub(super) struct WorkingSet<'a> {
-    pub(super) qp: &'a EpigraphQp<'a>,
+    pub(super) sides: Sides<'a>,
     pub(super) coordinates: &'a Coordinates,
-    /// Rows of A, one after the other.
-    rows: Vec<f64>,
-    /// Norms of the normals, cuts then rows.
-    pub(super) norms: Vec<f64>,
-    /// The extra entry c of a cut's column.
-    pub(super) cut_entry: f64,
     pub(super) factor: Factor,
     pub(super) general: Vec<Active>,
     pub(super) fixed: Vec<Option<Active>>,
@@ -81,155 +53,87 @@ pub(super) struct WorkingSet<'a> {
     /// The current v.
     pub(super) epigraph: f64,
     pub(super) pivots: usize,
-    /// Norm of the steepest cut: the length of the unconstrained step.
-    steepest: f64,
-    /// ℓ = |d| + steepest.
+    /// ℓ = |d| + norm of the steepest cut.
     reach: f64,
-    /// b: largest distance |side| / |a| of the rows and bounds.
-    largest_side: f64,
     /// Smallest size of an active cut: one v serves them all, so an error of one is an error of each.
     pub(super) smallest_cut_size: f64,
 }
 
 impl<'a> WorkingSet<'a> {
-    pub(super) fn new(qp: &'a EpigraphQp<'a>, coordinates: &'a Coordinates, cut_entry: CutEntry) -> Self {
-        let (n, m, p) = (qp.dimension(), qp.slopes.len(), qp.rows.nrows());
-        let mut rows = vec![0.0; n * p];
-        for (k, column) in qp.rows.column_iter().enumerate() {
-            column.iter().enumerate().for_each(|(i, a)| rows[i * n + k] = *a);
-        }
-        let weights: Vec<f64> = (0..n).map(|i| qp.metric.diagonal_entry(i).sqrt().recip()).collect();
-        let scaled_norm = |normal: &[f64]| {
-            let mut scaled = normal.to_vec();
-            scaled.iter_mut().zip(&weights).for_each(|(a, w)| *a *= w);
-            super::kernels::norm(&scaled)
-        };
-        let mut norms: Vec<f64> = qp.slopes.iter().map(|slope| scaled_norm(slope.as_slice())).collect();
-        let steepest = norms.iter().copied().fold(0.0, f64::max);
-        let cut_entry = cut_entry.of(&norms);
-        if n > 0 {
-            norms.extend(rows.chunks_exact(n).map(scaled_norm));
-        } else {
-            norms.resize(m + p, 0.0);
-        }
+    pub(super) fn new(sides: Sides<'a>, coordinates: &'a Coordinates) -> Self {
+        let n = sides.qp.dimension();
         Self {
-            qp,
             coordinates,
-            largest_side: largest_side(qp, &norms[m..], &weights),
-            rows,
-            norms,
-            cut_entry,
             factor: Factor::new(n + 1),
             general: Vec::new(),
             fixed: vec![None; n],
-            held: vec![false; m + p + n],
+            held: vec![false; sides.count()],
             step: Vector::zeros(n),
             epigraph: 0.0,
             pivots: 0,
-            steepest,
-            reach: steepest,
+            reach: sides.steepest,
             smallest_cut_size: f64::INFINITY,
-        }
-    }
-
-    fn index(&self, member: Member) -> usize {
-        let cuts = self.qp.slopes.len();
-        match member {
-            Member::Cut(j) => j,
-            Member::Row(i) => cuts + i,
-            Member::Bound(k) => cuts + self.qp.rows.nrows() + k,
+            sides,
         }
     }
 
     pub(super) fn is_held(&self, member: Member) -> bool {
-        self.held[self.index(member)]
-    }
-
-    /// Gradient of a cut or of a row in the variables d; none for a bound.
-    pub(super) fn gradient(&self, member: Member) -> Option<&[f64]> {
-        let n = self.qp.dimension();
-        match member {
-            Member::Cut(j) => Some(self.qp.slopes[j].as_slice()),
-            Member::Row(i) => Some(&self.rows[i * n..(i + 1) * n]),
-            Member::Bound(_) => None,
-        }
-    }
-
-    /// Lower and upper side of a member.
-    pub(super) fn interval(&self, member: Member) -> (f64, f64) {
-        match member {
-            Member::Cut(j) => (f64::NEG_INFINITY, self.qp.offsets[j]),
-            Member::Row(i) => (self.qp.row_lower[i], self.qp.row_upper[i]),
-            Member::Bound(k) => (self.qp.lower[k], self.qp.upper[k]),
-        }
+        self.held[self.sides.index(member)]
     }
 
     /// normalᵀ d − s v.
     pub(super) fn value(&self, member: Member) -> f64 {
-        match (member, self.gradient(member)) {
-            (Member::Cut(_), Some(gradient)) => dot(gradient, self.step.as_slice()) - self.epigraph,
-            (_, Some(gradient)) => dot(gradient, self.step.as_slice()),
-            (Member::Bound(k), None) => self.step[k],
-            (_, None) => 0.0,
-        }
+        let product = self.sides.product(member, self.step.as_slice());
+        if member.is_cut() { product - self.epigraph } else { product }
     }
 
     /// Size of the terms of `value − side`.
     pub(super) fn terms(&self, member: Member, side: f64) -> f64 {
-        let terms = match member {
-            Member::Bound(k) => self.step[k].abs(),
-            _ => self.gradient(member).map_or(0.0, |gradient| dot_terms(gradient, self.step.as_slice())),
+        let terms = match self.sides.normal(member) {
+            Normal::Gradient(gradient) => dot_terms(gradient, self.step.as_slice()),
+            Normal::Axis(k) => self.step[k].abs(),
         };
-        let epigraph = if matches!(member, Member::Cut(_)) { self.epigraph.abs() } else { 0.0 };
+        let epigraph = if member.is_cut() { self.epigraph.abs() } else { 0.0 };
         terms + epigraph + side.abs()
     }
 
     /// Size of a side: its terms, plus a share of its normal for the case that they vanish.
     pub(super) fn size(&self, member: Member, side: f64) -> f64 {
-        self.terms(member, side) + LENGTH_SHARE * self.reach * self.norm(member)
+        self.terms(member, side) + LENGTH_SHARE * self.reach * self.sides.norm(member)
     }
 
     /// Size of a side that counts the rounding of all sides too, as in the certificate.
     pub(super) fn data_size(&self, member: Member, side: f64) -> f64 {
-        let largest_side = if matches!(member, Member::Cut(_)) { 0.0 } else { self.largest_side };
-        self.size(member, side) + SIDE_SHARE * largest_side * self.norm(member)
-    }
-
-    /// Norm of a normal in the metric's coordinates; for a dense metric in those of its diagonal.
-    pub(super) fn norm(&self, member: Member) -> f64 {
-        match member {
-            Member::Bound(k) => self.qp.metric.diagonal_entry(k).sqrt().recip(),
-            _ => self.norms[self.index(member)],
-        }
+        let largest = if member.is_cut() { 0.0 } else { self.sides.largest };
+        self.size(member, side) + SIDE_SHARE * largest * self.sides.norm(member)
     }
 
     /// Updates the sizes against which residuals are measured to the current step.
     pub(super) fn measure(&mut self) {
-        let square = |(k, d): (usize, &f64)| d * d * self.qp.metric.diagonal_entry(k);
-        self.reach = self.steepest + self.step.iter().enumerate().map(square).sum::<f64>().sqrt();
-        let cuts = self.general.iter().filter(|active| matches!(active.member, Member::Cut(_)));
+        let square = |(k, d): (usize, &f64)| d * d * self.sides.qp.metric.diagonal_entry(k);
+        self.reach = self.sides.steepest + self.step.iter().enumerate().map(square).sum::<f64>().sqrt();
+        let cuts = self.general.iter().filter(|active| active.member.is_cut());
         let sizes = cuts.map(|active| self.size(active.member, self.held_value(active)));
         self.smallest_cut_size = sizes.fold(f64::INFINITY, f64::min);
     }
 
     /// The value an active member is held at.
     pub(super) fn held_value(&self, active: &Active) -> f64 {
-        let (lower, upper) = self.interval(active.member);
+        let (lower, upper) = self.sides.interval(active.member);
         if active.side == Side::Lower { lower } else { upper }
     }
 
     /// The column of a member in the factors.
     pub(super) fn column(&self, member: Member) -> Vec<f64> {
-        let mut column = match (member, self.gradient(member)) {
-            (Member::Bound(k), _) => {
-                let mut unit = vec![0.0; self.qp.dimension()];
+        let mut column = match self.sides.normal(member) {
+            Normal::Gradient(gradient) => self.coordinates.normal(gradient),
+            Normal::Axis(k) => {
+                let mut unit = vec![0.0; self.sides.qp.dimension()];
                 unit[k] = self.coordinates.axis_length(k).unwrap_or(1.0);
                 self.coordinates.normal(&unit)
             }
-            (_, Some(gradient)) => self.coordinates.normal(gradient),
-            (_, None) => vec![0.0; self.qp.dimension()],
         };
-        column.push(if matches!(member, Member::Cut(_)) { self.cut_entry } else { 0.0 });
+        column.push(if member.is_cut() { self.sides.cut_entry } else { 0.0 });
         column
     }
 
@@ -264,8 +168,7 @@ impl<'a> WorkingSet<'a> {
             self.factor.push(column, split);
             self.general.push(active);
         }
-        let index = self.index(active.member);
-        self.held[index] = true;
+        self.held[self.sides.index(active.member)] = true;
         self.pivots += 1;
     }
 
@@ -282,8 +185,7 @@ impl<'a> WorkingSet<'a> {
             }
         };
         if let Some(active) = released {
-            let index = self.index(active.member);
-            self.held[index] = false;
+            self.held[self.sides.index(active.member)] = false;
         }
         self.pivots += 1;
     }
@@ -294,22 +196,43 @@ impl<'a> WorkingSet<'a> {
 
     /// Sum of the active cuts' multipliers.
     pub(super) fn cut_sum(&self) -> f64 {
-        self.general.iter().filter(|active| matches!(active.member, Member::Cut(_))).map(|a| a.multiplier).sum()
+        self.general.iter().filter(|active| active.member.is_cut()).map(|a| a.multiplier).sum()
+    }
+
+    /// Adds the normals of the columns, each times the factor of its column.
+    pub(super) fn add_normals(&self, sum: &mut [f64], factors: impl IntoIterator<Item = f64>) {
+        for (active, factor) in self.general.iter().zip(factors) {
+            self.sides.add_normal(sum, factor, active.member);
+        }
+    }
+
+    /// Sets d to the minimiser that belongs to the multipliers of the columns, v to 0.
+    pub(super) fn place_step(&mut self) {
+        let mut step = Vector::zeros(self.step.len());
+        self.add_normals(step.as_mut_slice(), self.general.iter().map(|active| active.multiplier));
+        self.coordinates.minimiser(&mut step);
+        self.step = step;
+        self.epigraph = 0.0;
+    }
+
+    /// Puts fixed coordinates on their bounds without rounding.
+    pub(super) fn place_fixed(&mut self) {
+        for k in 0..self.fixed.len() {
+            if let Some(active) = self.fixed[k] {
+                self.step[k] = self.held_value(&active);
+            }
+        }
     }
 }
 
-impl CutEntry {
-    /// In the order in which they are tried.
-    pub(super) const ALL: [Self; 3] = [Self::Median, Self::Lower, Self::Upper];
+/// The first multiplier that reaches zero: the length until then, and the place of its member.
+#[derive(Default)]
+pub(super) struct FirstBlock(pub(super) Option<(f64, Place)>);
 
-    /// Its value for cuts of these norms.
-    fn of(self, norms: &[f64]) -> f64 {
-        let mut positive: Vec<f64> = norms.iter().copied().filter(|norm| *norm > 0.0).collect();
-        let Some(median) = upper_median(&mut positive) else { return 1.0 };
-        match self {
-            Self::Median => median,
-            Self::Lower => median.sqrt() * positive.into_iter().fold(median, f64::min).sqrt(),
-            Self::Upper => median.sqrt() * positive.into_iter().fold(median, f64::max).sqrt(),
+impl FirstBlock {
+    pub(super) fn consider(&mut self, length: Option<f64>, place: Place) {
+        if let Some(length) = length.filter(|length| self.0.is_none_or(|(shortest, _)| *length < shortest)) {
+            self.0 = Some((length, place));
         }
     }
 }

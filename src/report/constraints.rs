@@ -5,11 +5,11 @@ use crate::qp::kernels::difference_dot;
 use crate::{ConstraintKind, InputError, Vector, plain};
 use serde::{Deserialize, Serialize};
 
-/// What a run has found of one nonlinear constraint.
+/// A nonlinear constraint at the end of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ConstraintReport {
-    /// What the constraint asks for.
+    /// The kind of the constraint.
     pub kind: ConstraintKind,
     /// c_j at the solution, in its own unit.
     pub value: f64,
@@ -60,7 +60,7 @@ impl ConstraintCut {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ConstraintProof {
-    /// What each constraint asks for.
+    /// The kinds of the constraints.
     pub kinds: Vec<ConstraintKind>,
     /// c at the point, m entries.
     #[serde(with = "plain::vector")]

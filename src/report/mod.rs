@@ -89,7 +89,7 @@ impl Report {
         self.termination.is_confirmed() && self.is_feasible()
     }
 
-    /// What to try next.
+    /// Advice on the next attempt, by the reason of the end.
     pub fn advice(&self) -> &'static str {
         self.termination.advice(self.certificate.as_ref().is_some_and(|certificate| certificate.convex))
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What became of an evaluation.
+/// The outcome of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -68,7 +68,7 @@ impl std::fmt::Display for Origin {
 pub struct IterationRecord {
     /// Number of the evaluation, from 1, failed ones included.
     pub evaluation: usize,
-    /// What became of it.
+    /// The outcome of the evaluation.
     pub kind: StepKind,
     /// Who proposed the point.
     pub origin: Origin,
@@ -99,7 +99,7 @@ pub struct IterationRecord {
     /// Whether the oracle returned a Jacobian.
     #[serde(default)]
     pub jacobian: bool,
-    /// What went wrong without failing the evaluation, such as a Jacobian that could not be had.
+    /// A defect that did not fail the evaluation, such as a Jacobian that could not be had.
     #[serde(default)]
     pub note: Option<String>,
     /// Work that the evaluation took, in the oracle's unit; 0 if it failed, or where none is counted.
@@ -109,7 +109,7 @@ pub struct IterationRecord {
     pub seconds: f64,
 }
 
-/// What a record notes about the Jacobian of an evaluation.
+/// The note of a record about the Jacobian of an evaluation.
 #[derive(Debug, PartialEq, Eq, Default)]
 pub(crate) enum Noted {
     /// The oracle said nothing about a Jacobian.

@@ -38,7 +38,7 @@ pub enum Termination {
     Violated {
         /// The constraint that is violated most, counted from 0.
         constraint: usize,
-        /// Its violation, c_j or |c_j| of an equality.
+        /// The violation of the constraint, c_j or |c_j| of an equality.
         violation: f64,
         /// How the run ended there.
         end: String,
@@ -49,9 +49,9 @@ pub enum Termination {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
     },
-    /// What the model promises is below the noise of the oracle.
+    /// The decrease that the model promises is below the noise of the oracle.
     NoiseLimit {
-        /// What noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
+        /// The decrease that noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
         estimate: f64,
     },
     /// The step has become too short to change the variables while the model still promises decrease: values and

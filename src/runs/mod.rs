@@ -58,9 +58,9 @@ pub type Watch<'w> = dyn FnMut(&Vector, &[IterationRecord]) -> ControlFlow<()> +
 /// A run that has not begun; `L` says what it is among others.
 #[derive(Debug)]
 pub struct Stage<O, L> {
-    /// What the run is.
+    /// The label of the run.
     pub label: L,
-    /// What is minimised.
+    /// The objective to minimise.
     pub objective: Arc<O>,
     /// The admissible set.
     pub set: Polyhedron,

@@ -51,7 +51,7 @@ impl<O> Subspace<O> {
         report
     }
 
-    /// What an evaluation at x says on β.
+    /// The evaluation at β that one at x gives.
     fn restricted<W>(&self, mut evaluation: Evaluation<W>) -> Evaluation<W> {
         evaluation.subgradient = self.directions.tr_mul(&evaluation.subgradient);
         if let Linearized::Known(known) = &mut evaluation.linearization {

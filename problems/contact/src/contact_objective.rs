@@ -9,7 +9,7 @@ use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCa
 use crate::scene::Scene;
 use crate::shape::LatticeShape;
 use nonsmooth::composite::OuterFunction;
-use nonsmooth::nonlinear::ConstraintPiece;
+use nonsmooth::ConstraintPiece;
 use nonsmooth::{
     Answer, CompositeObjective, ConstraintEvaluation, ConstraintKind, CostGradient, Evaluation, Matrix,
     NonsmoothObjective, OracleError, OutputJacobian, Request, StateSolver, Vector,

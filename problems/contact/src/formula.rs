@@ -301,6 +301,7 @@ impl Parser {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scalar::Dual;
 
     fn parse(text: &str) -> Result<Formula, SceneError> {
         Formula::parse("f", text)
@@ -376,10 +377,18 @@ mod tests {
     }
 
     #[test]
-    fn the_page_names_every_function() {
-        let page = include_str!("../../../docs/scenes.md");
-        for (name, _) in FUNCTIONS {
-            assert!(page.contains(&format!("`{name}`")), "{name}");
+    fn every_function_has_its_value_and_its_derivative() {
+        let at = |x1: f64, text: &str| parse(text).expect(text).value([x1, 0.3, 0.0]);
+        for (name, function) in FUNCTIONS {
+            let text = if matches!(function, One(..)) { format!("{name}(x1)") } else { format!("{name}(x1, x2)") };
+            let difference = (at(0.4 + 1e-6, &text) - at(0.4 - 1e-6, &text)) / 2e-6;
+            let place = [Dual::new(0.4, 1.0), Dual::new(0.3, 0.0), Dual::new(0.0, 0.0)];
+            let slope = parse(&text).expect(&text).value(place).derivative;
+            assert!((slope - difference).abs() < 1e-8, "{text}: {slope}, by differences {difference}");
+        }
+        let values = [("sinh(1)", 1.1752011936438014), ("atan(1)", std::f64::consts::FRAC_PI_4), ("min(2, 1)", 1.0)];
+        for (text, expected) in values {
+            assert!((at(0.4, text) - expected).abs() < 1e-15, "{text}");
         }
     }
 }

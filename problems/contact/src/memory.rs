@@ -186,10 +186,11 @@ mod tests {
     #[test]
     fn a_scene_beyond_any_machine_is_refused_with_the_figures() {
         let scene = signorini().expect("a preset").with_bricks([400; 3], [1; 3]);
-        let error = check(&SolverPlan::new(scene, SolverKind::Direct), &InProcess);
-        if available().is_some() {
-            let text = error.expect_err("needs terabytes").to_string();
-            assert!(text.contains("GB"), "{text}");
-        }
+        let needed = estimate(&scene, SolverKind::Direct, PreconditionerKind::Dirichlet, 0, 1);
+        let text = compare(&scene, needed, Some(1e12)).expect_err("needs more than a terabyte").to_string();
+        assert!(text.contains("400x400x400 bricks") && text.contains("1000.0 GB of memory"), "{text}");
+        assert_eq!(compare(&scene, needed, None).ok(), Some(()), "what is not known refuses nothing");
+        let refused = check(&SolverPlan::new(scene, SolverKind::Direct), &InProcess).is_err();
+        assert_eq!(refused, available().is_some());
     }
 }

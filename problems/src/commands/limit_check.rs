@@ -68,7 +68,7 @@ impl LimitCheck {
             let rounding = MAX_ROUNDING * limit.scale();
             let excess = recomputed.map(|recomputed| Number::new(proof.values[index], recomputed, rounding));
             let at_point = proof.cuts.iter().filter(|cut| cut.constraint == index && cut.point == certificate.point);
-            let difference = |cut: &nonsmooth::report::ConstraintCut| match (&own, pressures) {
+            let difference = |cut: &nonsmooth::ConstraintCut| match (&own, pressures) {
                 (Some((_, slope)), _) => Some((slope - &cut.subgradient).norm() / slope.norm().max(f64::MIN_POSITIVE)),
                 (None, Some(composite)) => {
                     Some(nearest_row((cut.value, &cut.subgradient), composite, range.clone(), limit.bound))

@@ -40,7 +40,8 @@ pub(super) fn absolute_values(epigraph: &Epigraph) -> Option<Vec<AbsoluteValue>>
 pub(super) fn solve(
     model: &CompositeModel<'_>,
     metric: &Matrix,
-    (values, epigraph): (&[AbsoluteValue], &Epigraph),
+    values: &[AbsoluteValue],
+    epigraph: &Epigraph,
 ) -> Option<ConeAnswer> {
     let (outputs, jacobian) = (&model.linearization.outputs, &model.linearization.jacobian);
     let n = jacobian.ncols();
@@ -72,6 +73,6 @@ pub(super) fn solve(
     for (value, found) in values.iter().zip(answer.weights.iter()) {
         weights[value.output] = value.factor * found + value.rest;
     }
-    let sides = multipliers(&sides, &answer.multipliers, (model, &units));
+    let sides = multipliers(&sides, &answer.multipliers, model, &units);
     ConeAnswer::finite(answer.x.component_mul(&units.steps), epigraph.within_domain(weights), sides)
 }

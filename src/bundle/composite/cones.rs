@@ -25,7 +25,7 @@ use clarabel::solver::{
 };
 
 /// The constraints b − A (d̂, t̂) ∈ cones, A by columns.
-struct Constraints {
+struct ConeRows {
     columns: Vec<Vec<(usize, f64)>>,
     sides: Vec<f64>,
     cones: Vec<SupportedConeT<f64>>,
@@ -43,11 +43,11 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: &Epigraph) -> Option<C
     let (m, n) = jacobian.shape();
     let metric = model.with_metric(Matrix::zeros(n, n));
     if let Some(values) = absolute_values(epigraph) {
-        return absolute_values::solve(model, &metric, (&values, epigraph));
+        return absolute_values::solve(model, &metric, &values, epigraph);
     }
-    let units = Units::of_terms(outputs, jacobian, (&metric, epigraph));
+    let units = Units::of_terms(outputs, jacobian, &metric, epigraph);
     let count: usize = epigraph.terms().iter().map(variables).sum();
-    let mut constraints = Constraints { columns: vec![vec![]; n + count], sides: vec![], cones: vec![] };
+    let mut constraints = ConeRows { columns: vec![vec![]; n + count], sides: vec![], cones: vec![] };
     let mut of_set = sides_of(model, &units);
     constraints.admit(&mut of_set);
     let mut linear: Vec<f64> = linear_part(model, epigraph, &units).iter().copied().collect();
@@ -58,7 +58,7 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: &Epigraph) -> Option<C
         });
         let own = outputs.rows(term.outputs.start, term.outputs.len()) / units.outputs;
         places.push(Place { term, row: constraints.sides.len() });
-        constraints.epigraph(&own, &scaled, (term.function, linear.len()));
+        constraints.epigraph(&own, &scaled, term.function, linear.len());
         linear.extend(vec![term.weight * units.outputs.powf(exponent(term)) / units.value; variables(term)]);
     }
     let entry = |i: usize, j: usize| metric[(i, j)] * units.steps[i] * units.steps[j] / units.value;
@@ -77,7 +77,7 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: &Epigraph) -> Option<C
     let mut weights = Vector::zeros(m);
     places.iter().for_each(|place| place.add_weights(z, &mut weights));
     let weights = epigraph.within_domain(weights * (units.value / units.outputs));
-    ConeAnswer::finite(step, weights, multipliers(&of_set, z, (model, &units)))
+    ConeAnswer::finite(step, weights, multipliers(&of_set, z, model, &units))
 }
 
 /// The program is scaled already; another scaling, by cones, ends the method early where there are many power cones.
@@ -111,7 +111,7 @@ impl Place<'_> {
     }
 }
 
-impl Constraints {
+impl ConeRows {
     fn push(&mut self, side: f64, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (column, entry) in entries {
             if entry != 0.0 {
@@ -131,7 +131,7 @@ impl Constraints {
     }
 
     /// (t, ĉ + Ĝ d̂) in the cones of a term, whose epigraph variables begin at a column.
-    fn epigraph(&mut self, outputs: &Vector, jacobian: &Matrix, (function, first): (ConeFunction, usize)) {
+    fn epigraph(&mut self, outputs: &Vector, jacobian: &Matrix, function: ConeFunction, first: usize) {
         let (m, n) = jacobian.shape();
         if m == 0 {
             return;

@@ -35,8 +35,10 @@ impl Memory {
     /// along them say nothing about other directions.
     pub(super) fn curvature(
         &self,
-        (point, jacobian): (&Vector, &Matrix),
-        (weights, has_mean): (&Vector, bool),
+        point: &Vector,
+        jacobian: &Matrix,
+        weights: &Vector,
+        has_mean: bool,
         norm: &ScaledNorm,
     ) -> Option<Matrix> {
         let slope = jacobian.tr_mul(weights);

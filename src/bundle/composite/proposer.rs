@@ -281,7 +281,7 @@ impl Proposer for Composite {
         let Some(outer) = at.outer else { return };
         if let Some(known) = trial.linearization {
             let curved = are_curved(outer, at.state.constraints.as_deref());
-            self.steps.remember(outer, &trial.proposal.trial, (known, trial.constraints), curved);
+            self.steps.remember(outer, &trial.proposal.trial, known, trial.constraints, curved);
         }
         if self.escape.is_some() || self.proved.is_some() && !trial.serious {
             return;
@@ -338,7 +338,7 @@ impl Proposer for Composite {
             let constraints = at.state.constraints.as_deref();
             let curved = are_curved(outer, constraints);
             let found = constraints.map(|constraints| constraints.center_evaluation());
-            self.steps.remember(outer, &at.state.center, (known, found), curved);
+            self.steps.remember(outer, &at.state.center, known, found, curved);
         }
         self.rebase(at, linearization);
     }
@@ -349,7 +349,7 @@ impl Proposer for Composite {
     }
 }
 
-/// What outputs, their Jacobian and h tell about the scale of Θ; none where h gives no subgradient of the right size.
+/// The scale of Θ from outputs, their Jacobian and h; none where h gives no subgradient of the right size.
 fn output_scales(outer: &dyn OuterFunction, known: &Linearization, reach: &Vector) -> Option<OutputScales> {
     let Linearization { outputs, jacobian, .. } = known;
     let weights = without_panic(|| outer.subgradient(outputs)).ok().filter(|w| w.len() == outputs.len())?;

@@ -53,7 +53,8 @@ pub(super) fn linear_part(model: &CompositeModel<'_>, epigraph: &Epigraph, units
 pub(super) fn multipliers(
     sides: &[ScaledSide],
     z: &[f64],
-    (model, units): (&CompositeModel<'_>, &Units),
+    model: &CompositeModel<'_>,
+    units: &Units,
 ) -> (Vector, Vector) {
     let mut multipliers = (Vector::zeros(model.set.rows().nrows()), Vector::zeros(model.base.len()));
     for (side, &z) in sides.iter().zip(z) {
@@ -71,7 +72,7 @@ impl ConeAnswer {
 
 impl Units {
     /// The units of terms, linear ones left out.
-    pub(super) fn of_terms(outputs: &Vector, jacobian: &Matrix, (metric, epigraph): (&Matrix, &Epigraph)) -> Self {
+    pub(super) fn of_terms(outputs: &Vector, jacobian: &Matrix, metric: &Matrix, epigraph: &Epigraph) -> Self {
         let terms = || epigraph.terms().iter().filter(|term| term.function != ConeFunction::Linear);
         let rows: Vec<usize> = terms().flat_map(|term| term.outputs.clone()).collect();
         let size = unit(rows.iter().map(|&i| outputs[i].abs()));

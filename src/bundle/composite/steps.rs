@@ -64,7 +64,8 @@ impl Steps {
         &mut self,
         outer: &dyn OuterFunction,
         point: &Vector,
-        (known, constraints): (&Linearization, Option<&ConstraintEvaluation>),
+        known: &Linearization,
+        constraints: Option<&ConstraintEvaluation>,
         curved: bool,
     ) {
         let Linearization { outputs, jacobian, .. } = known;
@@ -115,7 +116,7 @@ impl Steps {
         let mut step = None;
         for _ in 0..2 {
             let Some(weights) = &self.weights else { break };
-            let curvature = self.memory.curvature((&base.point, &all), (weights, constraints.is_none()), model.norm);
+            let curvature = self.memory.curvature(&base.point, &all, weights, constraints.is_none(), model.norm);
             let found = CompositeModel { curvature: curvature.as_ref(), ..model }.solve(at.solver)?;
             self.weights = Some(weights_of(&found));
             step = Some(found);
@@ -169,7 +170,7 @@ fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -
     let errors = step.cuts.iter().map(|cut| cut.multiplier * largest(cut));
     let (error, length) = (errors.sum::<f64>(), state.norm.length(&step.step));
     let rows = step.row_multipliers.rows(0, set.rows().nrows()).into_owned();
-    let slack = slack_error((&rows, &step.bound_multipliers), &base.point, set);
+    let slack = slack_error(&rows, &step.bound_multipliers, &base.point, set);
     let aggregate = base.linearization.jacobian.tr_mul(&step.weights());
     let trial = &base.point + &step.step;
     let aggregate_norm = state.norm.dual_length(&(&aggregate + set.rows().tr_mul(&rows) + &step.bound_multipliers));

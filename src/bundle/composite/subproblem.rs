@@ -105,7 +105,7 @@ impl CompositeModel<'_> {
         let residual = self.norm.dual_length(&(slope + self.set.rows().tr_mul(&sides.0) + &sides.1));
         // The optimum d' lies lower by at most what the residual ρ allows: ⟨ρ, d' − d⟩ + u‖d' − d‖²/2 ≥ −‖ρ‖*²/2u.
         let farthest = self.norm.length(&step).max(0.5 * residual / self.weight);
-        let slack = slack_error((&sides.0, &sides.1), &point, self.set);
+        let slack = slack_error(&sides.0, &sides.1, &point, self.set);
         let left = missed + slack + residual * farthest;
         let solved = left <= MET_BY_CONES * self.merit(&step).abs() + LEFT_BY_CONES * self.value.abs();
         if solved || self.base.len() > MAX_VARIABLES_OF_CUTS {

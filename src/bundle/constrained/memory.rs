@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 /// A constraint is satisfied if its violation is at most this share of its size.
 const TOLERANCE: f64 = 1e-10;
-/// What rounding hides of a value c_j, as a share of Σ |h_i x_i|.
+/// The rounding of a value c_j, as a share of Σ |h_i x_i|.
 const ROUNDING: f64 = 2e-15;
 /// Linearizations above a constraint by more than this share of the terms prove it nonconvex.
 const CONVEX_SHARE: f64 = 1e-9;
@@ -103,9 +103,11 @@ impl Constraints {
     /// The constraints at the start; `slope` is ‖g‖* of the objective there.
     pub(crate) fn new(
         kinds: &[ConstraintKind],
-        (point, objective): (&Vector, f64),
+        point: &Vector,
+        objective: f64,
         evaluation: &ConstraintEvaluation,
-        (norm, slope): (&ScaledNorm, f64),
+        norm: &ScaledNorm,
+        slope: f64,
     ) -> Self {
         let center = known(point, objective, evaluation);
         let best = Best { point: point.clone(), objective, evaluation: evaluation.clone() };
@@ -248,7 +250,7 @@ impl Constraints {
         self.kinds.iter().any(|kind| *kind != ConstraintKind::Nonsmooth)
     }
 
-    /// What the constraints ask for.
+    /// The kinds of the constraints.
     pub(crate) fn kinds(&self) -> &[ConstraintKind] {
         &self.kinds
     }
@@ -268,7 +270,7 @@ impl Constraints {
         Vector::from_column_slice(&self.largest)
     }
 
-    /// What a report says of the constraints at a point, with the multipliers of its certificate.
+    /// The report of the constraints at a point, with the multipliers of its certificate.
     pub(crate) fn report(&self, values: &Vector, multipliers: Option<&Vector>) -> Vec<ConstraintReport> {
         let report = |j: usize| {
             let violation = self.kinds[j].violation(values[j]);
@@ -373,7 +375,7 @@ impl Constraints {
 
     /// Whether constraints with multipliers μ_j are degenerate: their gradients all but cancel each other, or vanish at
     /// the center with all that they have changed on the last step.
-    pub(crate) fn is_degenerate(&self, multipliers: &[f64], (slope, norm): (f64, &ScaledNorm), reach: f64) -> bool {
+    pub(crate) fn is_degenerate(&self, multipliers: &[f64], slope: f64, norm: &ScaledNorm, reach: f64) -> bool {
         let length = |known: &Known, j: usize| norm.dual_length(&known.evaluation.jacobian.row(j).transpose());
         let sum: f64 = (0..multipliers.len()).map(|j| multipliers[j].abs() * length(&self.center, j)).sum();
         let vanishes = |j: usize| {

@@ -32,7 +32,7 @@ pub(crate) struct WorkingSet {
     pub tangents: Rc<Vec<Tangent>>,
     /// σ_j of every constraint.
     pub units: Vec<f64>,
-    /// What every constraint asks for.
+    /// The kinds of the constraints.
     pub kinds: Vec<ConstraintKind>,
     /// v(x̂) − s ≥ 0.
     pub reduction: f64,
@@ -84,7 +84,9 @@ impl WorkingSet {
         set: &Polyhedron,
         constraints: &Constraints,
         center: &Vector,
-        (norm, negligible, reach): (&ScaledNorm, f64, f64),
+        norm: &ScaledNorm,
+        negligible: f64,
+        reach: f64,
         solver: &mut EpigraphQpSolver,
     ) -> Self {
         let mut seen = seen_from(constraints, center, norm);

@@ -4,14 +4,14 @@
 use crate::{Polyhedron, Vector};
 
 /// Σ slack·|multiplier| at the center.
-pub(crate) fn slack_error((rows, bounds): (&Vector, &Vector), center: &Vector, set: &Polyhedron) -> f64 {
+pub(crate) fn slack_error(rows: &Vector, bounds: &Vector, center: &Vector, set: &Polyhedron) -> f64 {
     let at_rows = set.rows() * center;
-    let sum = add_slacks(0.0, rows, &at_rows, (set.row_lower(), set.row_upper()));
-    add_slacks(sum, bounds, center, (set.lower(), set.upper()))
+    let sum = add_slacks(0.0, rows, &at_rows, set.row_lower(), set.row_upper());
+    add_slacks(sum, bounds, center, set.lower(), set.upper())
 }
 
 /// A sum, plus slack·|multiplier| of the sides of some values.
-fn add_slacks(sum: f64, multipliers: &Vector, at: &Vector, (lower, upper): (&Vector, &Vector)) -> f64 {
+fn add_slacks(sum: f64, multipliers: &Vector, at: &Vector, lower: &Vector, upper: &Vector) -> f64 {
     let active = multipliers.as_slice().iter().enumerate().filter(|(_, multiplier)| **multiplier != 0.0);
     active.fold(sum, |sum, (i, multiplier)| {
         let slack = if *multiplier > 0.0 { upper[i] - at[i] } else { at[i] - lower[i] };

@@ -1,5 +1,6 @@
 //! A trial point, and how it is made admissible.
 
+use super::proposer::Position;
 use crate::bundle::constrained::Tangent;
 use crate::bundle::cut::LEAST_ACTIVE_MULTIPLIER;
 use crate::bundle::state::BundleState;
@@ -95,7 +96,7 @@ impl SubproblemError {
         }
     }
 
-    /// Whether it is a fault of the outer function, which no other step cures.
+    /// Whether the error is a fault of the outer function, which no other step cures.
     pub(crate) fn blames_outer(&self) -> bool {
         matches!(
             self,
@@ -125,12 +126,15 @@ impl Proposal {
     /// cuts; the predicted decrease is `−change(step)` and must be positive.
     pub(crate) fn replaced(
         &self,
-        (step, weight, origin): (Vector, f64, Origin),
-        (set, state): (&Polyhedron, &BundleState),
+        at: &Position<'_>,
+        step: Vector,
+        weight: f64,
+        origin: Origin,
         change: impl Fn(&Vector) -> f64,
     ) -> Result<Self, SubproblemError> {
-        let trial = &state.center + &step;
-        let mut other = Self { trial, step, weight, origin, violation: 0.0, ..self.clone() }.admissible(set, state)?;
+        let trial = &at.state.center + &step;
+        let other = Self { trial, step, weight, origin, violation: 0.0, ..self.clone() };
+        let mut other = other.admissible(at.set, at.state)?;
         other.predicted_decrease = -change(&other.step);
         if other.predicted_decrease > 0.0 && other.step_length.is_finite() {
             Ok(other)

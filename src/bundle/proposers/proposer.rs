@@ -39,7 +39,7 @@ impl Answer {
     }
 }
 
-/// What a proposer sees of the run, and may change.
+/// The part of the run that a proposer reads and may change.
 pub(crate) struct Position<'a> {
     pub state: &'a mut BundleState,
     pub set: &'a Polyhedron,
@@ -52,7 +52,7 @@ pub(crate) struct Position<'a> {
 }
 
 impl Position<'_> {
-    /// What counts as small at the present center.
+    /// The levels of small decreases at the present center.
     pub(crate) fn resolution(&self) -> Resolution {
         Resolution::new(self.state, self.config)
     }

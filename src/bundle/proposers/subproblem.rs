@@ -65,15 +65,15 @@ impl Room {
         let at_center = set.rows() * center;
         let terms = set.rows().abs() * center.abs();
         let own = set.rows().nrows() - set.tangents();
-        let lower = slack(set.row_lower(), (&at_center, &terms), own, f64::min);
-        let upper = slack(set.row_upper(), (&at_center, &terms), own, f64::max);
+        let lower = slack(set.row_lower(), &at_center, &terms, own, f64::min);
+        let upper = slack(set.row_upper(), &at_center, &terms, own, f64::max);
         Self { rows: (lower, upper), bounds: (set.lower() - center, set.upper() - center) }
     }
 }
 
 /// Sides of the rows as seen from the center. A violation that is rounding of the center counts as zero, so that d = 0
 /// is admissible; a row that the center violates by more is one that the step is to reach.
-fn slack(side: &Vector, (at_center, terms): (&Vector, &Vector), own: usize, outward: fn(f64, f64) -> f64) -> Vector {
+fn slack(side: &Vector, at_center: &Vector, terms: &Vector, own: usize, outward: fn(f64, f64) -> f64) -> Vector {
     Vector::from_fn(side.len(), |i, _| {
         let slack = side[i] - at_center[i];
         let size = terms[i].max(side[i].abs());

@@ -110,9 +110,11 @@ impl Limit {
         Self { quantity, case: None, side, bound, typical: 0.0 }
     }
 
-    /// What an excess is compared with: the bound, or a typical value where that is larger.
+    /// What an excess is compared with: the bound, or a typical value where that is larger; one unit of the quantity
+    /// for a bound of 0 without a typical value.
     pub fn scale(&self) -> f64 {
-        self.bound.abs().max(self.typical)
+        let scale = self.bound.abs().max(self.typical);
+        if scale > 0.0 { scale } else { 1.0 }
     }
 
     /// Limits with the numbers of their cases in the order of the constraints of the optimizer: peak pressures by case,
@@ -182,4 +184,21 @@ impl Limit {
 
 fn sign(side: LimitSide) -> f64 {
     if side == LimitSide::AtLeast { -1.0 } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A scale of 0 would leave no allowance for rounding, and 0/0 as the relative excess of a limit that is kept.
+    #[test]
+    fn a_bound_of_zero_has_a_scale() {
+        for side in [LimitSide::AtMost, LimitSide::AtLeast] {
+            let limit = Limit::new(LimitedQuantity::LoadedArea { pressure: 1.0 }, side, 0.0);
+            let beyond = |value: f64| limit.excess(limit.sign() * value) / limit.scale();
+            assert_eq!([beyond(-1.0), beyond(0.0), beyond(0.5 * ALLOWANCE), beyond(0.25)], [0.0, 0.0, 0.0, 0.25]);
+            let typical = Limit { typical: 1e-3, ..limit };
+            assert!(typical.scale() == 1e-3 && typical.excess(typical.sign() * 0.5 * ALLOWANCE) > 0.0);
+        }
+    }
 }

@@ -76,12 +76,17 @@ fn loads_in_equilibrium_need_no_friction() {
         let scene = pushed(2, 0.3, ratio, CounterSurface::Plane { height: 101.0 }, [0.0, 0.0, 0.01]);
         let mut scene = scene.with_blocks(|blocks| (blocks.size, blocks.bricks) = ([1.0; 2], [2, 2, 24]));
         scene.bodies[0].loads.push(Load::traction(BlockFace::X1Min, [0.0, 0.0, -0.01]));
-        let shape = ContactShape::new(scene, SolverKind::Auto).unwrap();
-        if let Err(OracleError::Failed(error)) = shape.solve(&Vector::from_element(36, 100.0), None, Accuracy::TIGHTEST)
-        {
-            let error: ContactError = *error.downcast().unwrap();
-            assert!(!matches!(error, ContactError::FrictionTooWeak { .. }), "{ratio}: {error}");
-            println!("{ratio}: {error}");
+        let start = Vector::from_element(36, 100.0);
+        let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene.clone()).unwrap())).unwrap();
+        let needed = resistance(&solver.contact(start.as_slice()).unwrap());
+        assert!(needed.as_ref().is_none_or(|found| found.largest > 0.999 * found.resultant), "{ratio}: {needed:?}");
+        match ContactShape::new(scene, SolverKind::Auto).unwrap().solve(&start, None, Accuracy::TIGHTEST) {
+            Ok(_) => {}
+            Err(OracleError::Failed(error)) => {
+                let error: ContactError = *error.downcast().unwrap();
+                assert!(!matches!(error, ContactError::FrictionTooWeak { .. }), "{ratio}: {error}");
+            }
+            Err(other) => panic!("{ratio}: {other}"),
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) struct Penalised<'a> {
     pub center: &'a Vector,
 }
 
-/// What the quadratic program of one round gives.
+/// The solution of the quadratic program of one round.
 struct Round {
     /// p.
     correction: Vector,

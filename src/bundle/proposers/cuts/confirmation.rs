@@ -28,9 +28,9 @@ pub(super) struct Confirmation {
     points: Vec<Vector>,
     /// The cuts next to the center.
     near: Vec<Cut>,
-    /// What is small at the center, seen with all cuts.
+    /// The levels of small decreases at the center, from all cuts.
     resolution: Resolution,
-    /// What all cuts say about the center.
+    /// The answer of the subproblem with all cuts.
     of: Proposal,
     /// The end of the run if the cuts next to the center do not suffice.
     unconfirmed: Termination,
@@ -42,7 +42,7 @@ pub(super) struct Confirmation {
     probed: bool,
 }
 
-/// What follows in a confirmation: a trial point, or the end of the run.
+/// The next step of a confirmation: a trial point, or the end of the run.
 pub(super) enum Confirmed {
     Trial(Box<Proposal>),
     End(Box<Ending>),
@@ -89,27 +89,37 @@ impl Confirmation {
             }
         }
         let all = self.look_near(at);
-        let Some((found, evidence, proposal)) = self.ask_near(at) else { return self.give_up(at, all) };
+        let found = self.ask_near(at);
         at.state.weight = self.weight;
-        match found {
-            Near::Confirmed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
-            Near::Falls if self.probed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
-            _ if self.left == 0 => self.give_up(at, all),
-            Near::Falls => {
-                self.probed = true;
-                let promise = 10.0 * self.resolution.small();
-                let point = &at.state.center + &proposal.step * (promise / proposal.predicted_decrease);
-                at.state.bundle = all;
-                self.evaluation(at, point)
+        let point = match found {
+            // The certificate is that of the cuts next to the center: they stay in the bundle.
+            Some((Near::Confirmed, evidence, proposal)) => {
+                return ended(Ending::by_cuts(confirmed(&evidence), proposal));
             }
-            Near::Open => {
-                let length = Distances::new(at.state).length(&proposal.step);
-                let share = (0.5 * near(&self.resolution) / length).min(1.0);
-                let point = &at.state.center + &proposal.step * share;
-                at.state.bundle = all;
-                self.evaluation(at, point)
+            Some((Near::Falls, evidence, proposal)) if self.probed => {
+                return ended(Ending::by_cuts(confirmed(&evidence), proposal));
             }
+            Some((near, _, proposal)) if self.left > 0 => Some(self.toward(at, &near, &proposal)),
+            _ => None,
+        };
+        at.state.bundle = all;
+        match point.and_then(|point| self.trial(at, point)) {
+            Some(proposal) => Confirmed::Trial(Box::new(proposal)),
+            None => ended(self.unconfirmed.clone().into()),
         }
+    }
+
+    /// The point to evaluate on the step of the cuts next to the center: where they promise more than may be left, or
+    /// next to the center where their subgradients do not cancel.
+    fn toward(&mut self, at: &Position<'_>, near_cuts: &Near, proposal: &Proposal) -> Vector {
+        let share = if matches!(near_cuts, Near::Falls) {
+            self.probed = true;
+            10.0 * self.resolution.small() / proposal.predicted_decrease
+        } else {
+            let length = Distances::new(at.state).length(&proposal.step);
+            (0.5 * near(&self.resolution) / length).min(1.0)
+        };
+        &at.state.center + &proposal.step * share
     }
 
     /// What the cuts next to the center say at the largest weight that confirms, or at which their promise is not
@@ -129,7 +139,7 @@ impl Confirmation {
         let mut decreases = 0;
         loop {
             let evidence = Evidence::new(at.state, at.set, &proposal);
-            let found = near_verdict(at, &self.resolution, &evidence, &proposal);
+            let found = near_verdict(at.state.center_value, &self.resolution, &evidence, &proposal);
             let done = matches!(found, Near::Confirmed)
                 || proposal.predicted_decrease > near(&self.resolution)
                 || decreases == MAX_DECREASES;
@@ -147,18 +157,6 @@ impl Confirmation {
         self.near.iter().for_each(|cut| local.push(cut.clone(), &at.state.norm));
         at.state.weight = self.weight;
         std::mem::replace(&mut at.state.bundle, local)
-    }
-
-    fn evaluation(&mut self, at: &Position<'_>, point: Vector) -> Confirmed {
-        match self.trial(at, point) {
-            Some(proposal) => Confirmed::Trial(Box::new(proposal)),
-            None => ended(self.unconfirmed.clone().into()),
-        }
-    }
-
-    fn give_up(&self, at: &mut Position<'_>, all: Bundle) -> Confirmed {
-        at.state.bundle = all;
-        ended(self.unconfirmed.clone().into())
     }
 
     /// Takes in the newest cut.

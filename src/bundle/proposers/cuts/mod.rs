@@ -58,8 +58,7 @@ impl PlainCuts {
         };
         let step = &proposal.step * (longest / proposal.step_length);
         let cut_change = self.planes.model(at).cuts().change(&step);
-        let (weight, origin) = (proposal.weight, proposal.origin);
-        match proposal.replaced((step, weight, origin), (at.set, at.state), |_| cut_change) {
+        match proposal.replaced(at, step, proposal.weight, proposal.origin, |_| cut_change) {
             Ok(shorter) => Proposal { cut_change, ..shorter },
             Err(_) => proposal,
         }
@@ -92,7 +91,7 @@ impl Proposer for PlainCuts {
             curved.learn(at.state, trial);
         }
         self.test.learn(at, trial);
-        weight::learn(at.state, trial);
+        self.planes.weight_rule.learn(at.state, trial);
     }
 
     fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
@@ -103,7 +102,7 @@ impl Proposer for PlainCuts {
         if let Some(curved) = &mut self.curved {
             curved.shorten(at.state, proposal);
         }
-        weight::shorten(at.state, proposal);
+        self.planes.weight_rule.shorten(at.state, proposal);
     }
 
     fn recenter(&mut self, _at: &mut Position<'_>, _linearization: Option<&Linearization>) {

@@ -8,6 +8,7 @@
 
 use super::model::{MANY_VARIABLES, Model};
 use super::qualification::fails_within;
+use super::weight::WeightRule;
 use crate::bundle::norm::WeightedMetric;
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
@@ -32,6 +33,7 @@ pub(crate) struct CuttingPlanes {
     model: Option<(Key, Model)>,
     /// The answer of the last subproblem.
     proposal: Option<(Key, Proposal)>,
+    pub(super) weight_rule: WeightRule,
 }
 
 /// Center and revision of the bundle that a model or an answer belongs to.
@@ -106,7 +108,7 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     let gram = if many { model.products(state) } else { None };
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
-    let mut proposal = interpret(solution, (state, at.set), model);
+    let mut proposal = interpret(solution, state, at.set, model);
     proposal.tangents = at.working.map(|working| Rc::clone(&working.tangents));
     // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩
     // aside.
@@ -127,20 +129,20 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     proposal.admissible(at.set, state)
 }
 
-fn interpret(mut solution: QpSolution, (state, set): (&BundleState, &Polyhedron), model: &Model) -> Proposal {
+fn interpret(mut solution: QpSolution, state: &BundleState, set: &Polyhedron, model: &Model) -> Proposal {
     let step = std::mem::take(&mut solution.step);
     let squared = state.norm.squared(&step);
     let predicted_decrease = -solution.epigraph;
     let offsets = model.cuts().offsets;
     let cut_error: f64 = solution.cut_multipliers.iter().zip(offsets).map(|(l, a)| l * a).sum();
     model.distribute(&mut solution.cut_multipliers);
-    let multipliers = (Vector::from_vec(solution.row_multipliers), Vector::from_vec(solution.bound_multipliers));
-    let sides = (&multipliers.0, &multipliers.1);
+    let rows = Vector::from_vec(solution.row_multipliers);
+    let bounds = Vector::from_vec(solution.bound_multipliers);
     Proposal {
         trial: &state.center + &step,
         step_length: squared.sqrt(),
         composite_aggregate: None,
-        slack_error: slack_error(sides, &state.center, set),
+        slack_error: slack_error(&rows, &bounds, &state.center, set),
         step,
         predicted_decrease,
         cut_change: -predicted_decrease,
@@ -148,9 +150,9 @@ fn interpret(mut solution: QpSolution, (state, set): (&BundleState, &Polyhedron)
         aggregate_error: (predicted_decrease - state.weight * squared).max(0.0),
         cut_error,
         cut_multipliers: solution.cut_multipliers,
-        row_multipliers: multipliers.0,
+        row_multipliers: rows,
         tangents: None,
-        bound_multipliers: multipliers.1,
+        bound_multipliers: bounds,
         convexification: model.convexification,
         weight: state.weight,
         violation: 0.0,

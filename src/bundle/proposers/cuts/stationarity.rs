@@ -10,6 +10,7 @@
 
 use super::confirmation::{Confirmation, Confirmed};
 use super::planes::{CuttingPlanes, MAX_DECREASES};
+use super::weight::WeightRule;
 use crate::bundle::demand;
 use crate::bundle::evidence::{Evidence, active_cuts};
 use crate::bundle::proof::Ending;
@@ -25,7 +26,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const LEAST_STEP_LENGTH: f64 = 1e-2;
 /// Restarts without progress between them once Θ is known to be nonconvex; one before.
 const MAX_RESTARTS: usize = 5;
-/// What the test makes of a subproblem.
+/// The outcome of the test of a subproblem.
 pub(super) enum Next {
     /// A trial point of the cuts.
     Trial(Proposal),
@@ -71,7 +72,7 @@ impl StationarityTest {
                 Continue(found) => found,
             };
             at.state.weight = kept;
-            if self.may_restart(at) && self.restart(at, &proposal) {
+            if self.may_restart(at) && self.restart(at, planes, &proposal) {
                 continue;
             }
             let termination = unconfirmed(at, &evidence);
@@ -118,7 +119,7 @@ impl StationarityTest {
 
     /// Forgets the cuts beyond a tenth of the radius of the active ones and raises the weight for a short next step;
     /// false if there was nothing to forget.
-    fn restart(&mut self, at: &mut Position<'_>, proposal: &Proposal) -> bool {
+    fn restart(&mut self, at: &mut Position<'_>, planes: &mut CuttingPlanes, proposal: &Proposal) -> bool {
         self.restarts += 1;
         at.state.counts.restarts += 1;
         let state = &mut *at.state;
@@ -133,8 +134,7 @@ impl StationarityTest {
         let slope = state.bundle.cut(center_id).map_or(0.0, |cut| norm.dual_length(&cut.subgradient));
         let weight = state.weight.max(10.0 * slope / radius);
         state.set_weight(weight);
-        state.streak = 0;
-        state.variation = None;
+        planes.weight_rule = WeightRule::default();
         true
     }
 }

@@ -16,65 +16,70 @@ use crate::bundle::state::{BundleState, NOISE_MARGIN};
 use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
 
-/// Takes note that the oracle failed at a trial point of any proposer.
-pub(super) fn shorten(state: &mut BundleState, proposal: &Proposal) {
-    if proposal.origin == Origin::Cuts {
-        state.streak = -1;
-        state.set_weight(10.0 * proposal.weight);
-    }
+/// The memory of the steps of the plain cuts that sets the next weight.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct WeightRule {
+    /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), counted from the one that last changed the
+    /// weight.
+    streak: i64,
+    /// ε_v, an estimate of how far the model varies; none means unlimited.
+    variation: Option<f64>,
 }
 
-/// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
-pub(super) fn learn(state: &mut BundleState, trial: &Trial<'_>) {
-    if trial.proposal.origin != Origin::Cuts || trial.proposal.restores {
-        return;
-    }
-    if trial.serious {
-        after_serious(state, &trial.comparison);
-    } else {
-        after_null(state, trial);
-    }
-}
-
-/// Sets the weight after a serious step, before the center moves.
-fn after_serious(state: &mut BundleState, comparison: &Comparison) {
-    let u = state.weight;
-    let mut changed = false;
-    if state.streak > 0 && comparison.is_good() {
-        let next = interpolated_weight(comparison, u).max(u / 10.0).min(u);
-        if -comparison.change > NOISE_MARGIN * state.noise + state.rounding() {
-            state.lower_floor(next);
+impl WeightRule {
+    /// Takes note that the oracle failed at a trial point of any proposer.
+    pub(super) fn shorten(&mut self, state: &mut BundleState, proposal: &Proposal) {
+        if proposal.origin == Origin::Cuts {
+            self.streak = -1;
+            state.set_weight(10.0 * proposal.weight);
         }
-        changed = state.set_weight(next);
-    } else if state.streak > 2 {
-        changed = state.set_weight(u / 2.0);
     }
-    state.streak = if changed { 1 } else { (state.streak + 1).max(1) };
-    state.variation = state.variation.map(|variation| variation.max(-2.0 * comparison.model_change));
-}
 
-/// Sets the weight after a null step.
-fn after_null(state: &mut BundleState, trial: &Trial<'_>) {
-    let comparison = &trial.comparison;
-    let u = state.weight;
-    let seen = trial.proposal.aggregate_norm + trial.proposal.cut_error;
-    let variation = state.variation.map_or(seen, |variation| variation.min(seen));
-    state.variation = Some(variation);
-    let interpolated = interpolated_weight(comparison, u);
-    if error(comparison) > variation.max(-2.0 * comparison.model_change) && state.streak < -3 {
-        let changed = state.set_weight(interpolated.min(10.0 * u).max(u));
-        state.streak = if changed { -1 } else { (state.streak - 1).min(-1) };
-    } else if may_rest_on_errors(state) && rests_on_errors(trial.proposal) {
-        let changed = state.set_weight(2.0 * u);
-        state.streak = if changed { -1 } else { state.streak - 1 };
-    } else {
-        state.streak = (state.streak - 1).min(-1);
+    /// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
+    pub(super) fn learn(&mut self, state: &mut BundleState, trial: &Trial<'_>) {
+        if trial.proposal.origin != Origin::Cuts || trial.proposal.restores {
+            return;
+        }
+        if trial.serious {
+            self.after_serious(state, &trial.comparison);
+        } else {
+            self.after_null(state, trial);
+        }
     }
-}
 
-/// For few variables the cuts around the center are complete before their errors matter.
-fn may_rest_on_errors(state: &BundleState) -> bool {
-    !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
+    /// Sets the weight after a serious step, before the center moves.
+    fn after_serious(&mut self, state: &mut BundleState, comparison: &Comparison) {
+        let u = state.weight;
+        let mut changed = false;
+        if self.streak > 0 && comparison.is_good() {
+            let next = interpolated_weight(comparison, u).max(u / 10.0).min(u);
+            if -comparison.change > NOISE_MARGIN * state.noise + state.rounding() {
+                state.lower_floor(next);
+            }
+            changed = state.set_weight(next);
+        } else if self.streak > 2 {
+            changed = state.set_weight(u / 2.0);
+        }
+        self.streak = if changed { 1 } else { (self.streak + 1).max(1) };
+        self.variation = self.variation.map(|variation| variation.max(-2.0 * comparison.model_change));
+    }
+
+    /// Sets the weight after a null step.
+    fn after_null(&mut self, state: &mut BundleState, trial: &Trial<'_>) {
+        let comparison = &trial.comparison;
+        let u = state.weight;
+        let seen = trial.proposal.aggregate_norm + trial.proposal.cut_error;
+        let variation = self.variation.map_or(seen, |variation| variation.min(seen));
+        self.variation = Some(variation);
+        // For few variables the cuts around the center are complete before their errors matter.
+        let may_rest_on_errors = !state.nonconvex && self.streak < -2 && state.center.len() >= MANY_VARIABLES;
+        let changed = if error(comparison) > variation.max(-2.0 * comparison.model_change) && self.streak < -3 {
+            state.set_weight(interpolated_weight(comparison, u).min(10.0 * u).max(u))
+        } else {
+            may_rest_on_errors && rests_on_errors(trial.proposal) && state.set_weight(2.0 * u)
+        };
+        self.streak = if changed { -1 } else { (self.streak - 1).min(-1) };
+    }
 }
 
 /// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe
