@@ -159,5 +159,12 @@ fn stage(
         ..config.clone()
     };
     let set = objective.solver().problem().admissible.polyhedron().clone();
-    Ok(Stage { label: Label { part, bending_before }, objective, set, start, directions: net.map(|net| net.directions), config })
+    Ok(Stage {
+        label: Label { part, bending_before },
+        objective,
+        set,
+        start,
+        directions: net.map(|net| net.directions),
+        config,
+    })
 }
