@@ -5,8 +5,8 @@ use crate::body::elasticity::CellNodes;
 use crate::body::mesh::{Mesh, bounding_box};
 use crate::equilibrium::{ContactProblem, SolvedBody};
 use crate::error::SceneError;
+use crate::linear::parallel;
 use crate::names::{Kind, check_among, find};
-use rayon::prelude::*;
 
 /// A part of one body or of all.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,11 +47,12 @@ impl RegionCells {
     ) -> Vec<Vec<T>> {
         let parts = self.cells.iter().zip(solved).zip(bodies);
         let of_body = |((cells, solved), body): ((&Vec<usize>, &SolvedBody), &Body)| {
-            let of_cell = |&cell: &usize| {
+            let of_cell = |place: usize| {
+                let cell = cells[place];
                 let u = body.mesh.cell_values(cell, &solved.displacement);
                 compute(&body.mesh.cell_nodes(cell, &solved.positions), body.solid.material(cell).shear_modulus(), &u)
             };
-            cells.par_iter().map(of_cell).collect()
+            parallel::map(cells.len(), &of_cell)
         };
         parts.map(of_body).collect()
     }

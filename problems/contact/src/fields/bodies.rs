@@ -4,7 +4,7 @@ use crate::body::Body;
 use crate::body::elasticity::stress::{SymmetricTensor, von_mises};
 use crate::body::mesh::Mesh;
 use crate::equilibrium::SolvedBody;
-use rayon::prelude::*;
+use crate::linear::parallel;
 use std::sync::Arc;
 
 /// Fields of one body over the nodes and cells of its mesh.
@@ -33,13 +33,10 @@ impl BodyFields {
     /// From the displacements of a body.
     pub fn new(solved: SolvedBody, body: &Body) -> Self {
         let SolvedBody { mesh, positions, displacement, gluing_defect, subdomains } = solved;
-        let values: Vec<(SymmetricTensor, f64)> = (0..mesh.cell_count())
-            .into_par_iter()
-            .map(|cell| {
-                let nodes = mesh.cell_nodes(cell, &positions);
-                (nodes.stress(body.solid.material(cell), &mesh.cell_values(cell, &displacement)), nodes.volume())
-            })
-            .collect();
+        let values: Vec<(SymmetricTensor, f64)> = parallel::map(mesh.cell_count(), &|cell| {
+            let nodes = mesh.cell_nodes(cell, &positions);
+            (nodes.stress(body.solid.material(cell), &mesh.cell_values(cell, &displacement)), nodes.volume())
+        });
         let stress: Vec<SymmetricTensor> = values.iter().map(|(stress, _)| *stress).collect();
         let von_mises: Vec<f64> = stress.iter().map(von_mises).collect();
         let mut sums = vec![[0.0; 2]; mesh.node_count()];

@@ -10,7 +10,7 @@
 use crate::body::Body;
 use crate::body::loads::nodal_forces;
 use crate::equilibrium::{ContactForces, ContactPoint, ContactProblem, ContactRows, NodeRows, SolvedBody};
-use rayon::prelude::*;
+use crate::linear::parallel;
 use serde::Serialize;
 
 /// Forces on all bodies, and the largest stress in them.
@@ -89,7 +89,7 @@ impl LargestStress {
                 let (value, place) = nodes.largest_von_mises(body.solid.material(cell).shear_modulus(), &u);
                 Self { body: number, cell, place, value }
             };
-            (0..solved.mesh.cell_count()).into_par_iter().map(of_cell).collect::<Vec<_>>()
+            parallel::map(solved.mesh.cell_count(), &of_cell)
         };
         let cells = bodies.iter().zip(&*problem.bodies).enumerate().flat_map(of_body);
         // The first one of equal stresses.
@@ -135,7 +135,7 @@ fn internal_forces(body: &Body, solved: &SolvedBody) -> Vec<[f64; 3]> {
         let u = solved.mesh.cell_values(cell, &solved.displacement);
         solved.mesh.cell_nodes(cell, &solved.positions).forces(body.solid.material(cell), &u)
     };
-    let cells: Vec<Vec<f64>> = (0..solved.mesh.cell_count()).into_par_iter().map(of_cell).collect();
+    let cells: Vec<Vec<f64>> = parallel::map(solved.mesh.cell_count(), &of_cell);
     let mut sums = vec![[0.0; 3]; solved.mesh.node_count()];
     for (cell, forces) in solved.mesh.cells().zip(&cells) {
         for (&node, force) in cell.nodes.iter().zip(forces.as_chunks::<3>().0) {

@@ -1,9 +1,9 @@
 //! Column by column products and sums of blocks; sums in a fixed order, whatever the number of threads.
 
 use crate::linear::entry::{Entry, Row, vectorized};
+use crate::linear::parallel::for_parts;
 use crate::linear::real::Real;
 use crate::linear::sums::Sums;
-use rayon::prelude::*;
 
 /// Rows that are worked on together: their numbers stay in the cache of a core, and sums in single precision short.
 const CHUNK: usize = 256;
@@ -62,7 +62,7 @@ fn rows<const N: usize>(numbers: &[f64]) -> Vec<Row<f64, N>> {
 
 /// y += Σ factors∘x, with one factor per column for every x; x may have another precision than y.
 pub fn add_combination<E: Real, F: Real, const N: usize>(y: &mut [Row<E, N>], terms: &[(Row<f64, N>, &[Row<F, N>])]) {
-    y.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, y)| {
+    for_parts(y.chunks_mut(CHUNK), &|chunk, y| {
         for (factors, x) in terms {
             let (factors, x) = (factors.to::<E>(), &x[chunk * CHUNK..][..y.len()]);
             vectorized(

@@ -1,7 +1,7 @@
 //! Sparse rows: y_r = Σ_c A_rc x_c, for a vector or a block of columns.
 
 use crate::linear::entry::{Entry, vectorized};
-use rayon::prelude::*;
+use crate::linear::parallel::for_parts;
 
 /// A sparse matrix by rows.
 #[derive(Debug, Clone, Default)]
@@ -84,7 +84,7 @@ impl Csr {
             self.multiply_rows(0, x, y);
         } else {
             let rows = (PARALLEL_NUMBERS / 4).div_ceil(V::WIDTH);
-            y.par_chunks_mut(rows).enumerate().for_each(|(index, y)| self.multiply_rows(index * rows, x, y));
+            for_parts(y.chunks_mut(rows), &|index, y| self.multiply_rows(index * rows, x, y));
         }
     }
 

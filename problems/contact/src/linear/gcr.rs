@@ -25,6 +25,9 @@ pub struct ColumnCombination<E, P, const N: usize> {
     pub residuals: Row<f64, N>,
 }
 
+/// What a block of columns is mapped to.
+type Map<'a, E, R, const N: usize> = &'a dyn Fn(&[Row<E, N>]) -> R;
+
 /// Whether all columns have reached their targets.
 fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bool {
     residuals.iter().zip(targets.iter()).all(|(residual, target)| residual <= target)
@@ -40,8 +43,8 @@ pub fn gcr<E: Real, P, const N: usize>(
     mut residual: Vec<Row<E, N>>,
     targets: &Row<f64, N>,
     max_iterations: usize,
-    mut precondition: impl FnMut(&[Row<E, N>]) -> Vec<Row<E, N>>,
-    mut apply: impl FnMut(&[Row<E, N>]) -> (Vec<Row<E, N>>, P),
+    precondition: Map<'_, E, Vec<Row<E, N>>, N>,
+    apply: Map<'_, E, (Vec<Row<E, N>>, P), N>,
 ) -> ColumnCombination<E, P, N> {
     let residuals = norms(sums, &residual);
     let mut result =
@@ -122,7 +125,7 @@ mod tests {
             (0..3).for_each(|row| expected[row].set(column, values[row]));
         }
         let targets = Row::ZERO.map(|_: f64| 1e-12);
-        let krylov = gcr(&Whole, apply(&expected), &targets, 10, |r| r.to_vec(), |z| (apply(z), ()));
+        let krylov = gcr(&Whole, apply(&expected), &targets, 10, &|r| r.to_vec(), &|z| (apply(z), ()));
         assert_eq!(krylov.directions.len(), 3);
         assert!(reached(&krylov.residuals, &targets));
         let mut found = vec![Row::<f64, 1>::ZERO; 3];

@@ -9,6 +9,7 @@ mod error;
 pub(crate) mod gcr;
 pub(crate) mod gmres;
 pub mod ordering;
+pub(crate) mod parallel;
 pub(crate) mod pcg;
 pub(crate) mod real;
 pub(crate) mod right_side;

@@ -3,9 +3,9 @@
 use crate::linear::cholesky::NumericFactor;
 use crate::linear::dense::DenseLu;
 use crate::linear::entry::{Entry, Row};
+use crate::linear::parallel;
 use crate::linear::real::Real;
 use faer::Mat;
-use rayon::prelude::*;
 
 /// Entries of right sides.
 pub trait RightSide: Entry {
@@ -71,7 +71,7 @@ impl<E: Real, const N: usize> RightSide for Row<E, N> {
             columns
         };
         let starts: Vec<usize> = (0..Self::WIDTH).step_by(DENSE_COLUMNS).collect();
-        let solved: Vec<Mat<f64>> = starts.par_iter().map(|&first| solve(first)).collect();
+        let solved: Vec<Mat<f64>> = parallel::map(starts.len(), &|index| solve(starts[index]));
         for (row, b) in b.iter_mut().enumerate() {
             for (first, columns) in starts.iter().zip(&solved) {
                 for column in 0..columns.ncols() {

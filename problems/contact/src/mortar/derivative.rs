@@ -11,7 +11,7 @@ use super::facet::Patch;
 use super::pair::{COLUMNS, GAP, INPUTS, Jacobian, NORMAL, OfNodes, Raw, SYMMETRIC, Wide, jacobian, row_sums};
 use super::weights::Mortar;
 use super::{Along, normals};
-use rayon::prelude::*;
+use crate::linear::parallel;
 
 /// Derivatives of a function by the numbers of a node of the slave surface.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -53,8 +53,8 @@ impl Mortar {
     /// Derivatives of the integrals of all pairs, computed once.
     fn jacobians(&self) -> &[Vec<Jacobian>] {
         self.jacobians.get_or_init(|| {
-            let of_facet = |(facet, cover): (usize, &Option<Cover>)| {
-                let Some(cover) = cover else { return Vec::new() };
+            let of_facet = |facet: usize| {
+                let Some(cover) = &self.covers[facet] else { return Vec::new() };
                 let own = projected(&cover.frame, &self.slave, facet);
                 let curve = self.slave.curve(facet);
                 let of_pair = |master: usize| {
@@ -64,7 +64,7 @@ impl Mortar {
                 };
                 cover.pairs.iter().map(|pair| of_pair(pair.master)).collect()
             };
-            self.covers.par_iter().enumerate().map(of_facet).collect()
+            parallel::map(self.covers.len(), &of_facet)
         })
     }
 
@@ -74,10 +74,9 @@ impl Mortar {
         let slave: Vec<_> = self.slave.points().map(|node| velocity(0, node)).collect();
         let master: Vec<_> = self.master.points().map(|node| velocity(1, node)).collect();
         let jacobians = self.jacobians();
-        let facets = self.covers.par_iter().zip(jacobians).enumerate();
-        let changes: Vec<Option<FacetChange>> = facets
-            .map(|(facet, (cover, jacobians))| self.facet_change(facet, cover.as_ref()?, jacobians, [&slave, &master]))
-            .collect();
+        let changes: Vec<Option<FacetChange>> = parallel::map(self.covers.len(), &|facet| {
+            self.facet_change(facet, self.covers[facet].as_ref()?, &jacobians[facet], [&slave, &master])
+        });
         let mut areas = vec![0.0; self.slave.nodes.len()];
         let mut values = vec![0.0; self.places()];
         let mut quadratic = vec![[0.0; COLUMNS]; areas.len()];
@@ -170,12 +169,9 @@ impl Mortar {
         let jacobians = self.jacobians();
         let moving = [(&self.slave, moves[0]), (&self.master, moves[1])]
             .map(|(patch, moves)| patch.points().map(moves).collect::<Vec<_>>());
-        let facets = self.covers.par_iter().zip(jacobians).enumerate();
-        let parts: Vec<Option<FacetSensitivity>> = facets
-            .map(|(facet, (cover, jacobians))| {
-                self.facet_sensitivity(facet, cover.as_ref()?, jacobians, &sensitivities, &moving)
-            })
-            .collect();
+        let parts: Vec<Option<FacetSensitivity>> = parallel::map(self.covers.len(), &|facet| {
+            self.facet_sensitivity(facet, self.covers[facet].as_ref()?, &jacobians[facet], &sensitivities, &moving)
+        });
         let mut sums = [&self.slave, &self.master].map(|patch| vec![[0.0; 3]; patch.positions.len()]);
         if self.along == Along::Normals && !self.is_quadratic() {
             let normals: Vec<_> = own.iter().map(|node| node.normal).collect();

@@ -11,7 +11,7 @@ use super::facet::{Face, Patch};
 use super::frame::Bound;
 use super::normals::{unit, vector_areas};
 use super::pair::{GAP, Jacobian, NORMAL};
-use rayon::prelude::*;
+use crate::linear::parallel;
 use std::sync::OnceLock;
 
 /// Nodes covered less than this have no weights.
@@ -71,7 +71,7 @@ impl Mortar {
         let bound = |facet: usize| Bound::of_reversed(&master.corners(facet)[..master.count(facet)]);
         let bounds: Vec<Bound> = (0..master.facets.len()).map(bound).collect();
         let cover = |facet: usize| Cover::new(facet, &slave, &master, &bounds, along);
-        let mut covers: Vec<Option<Cover>> = (0..slave.facets.len()).into_par_iter().map(cover).collect();
+        let mut covers: Vec<Option<Cover>> = parallel::map(slave.facets.len(), &cover);
         let (starts, columns) = number(&mut covers, &slave, &master);
         let vector_areas = vector_areas(&slave);
         let mut mortar =

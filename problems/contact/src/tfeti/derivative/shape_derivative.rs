@@ -9,10 +9,10 @@ use crate::equilibrium::ContactRows;
 use crate::equilibrium::problem::add_at;
 use crate::equilibrium::row_work::{row_sensitivities, side_forces};
 use crate::equilibrium::trace_work::TraceWork;
+use crate::linear::parallel;
 use crate::shape::Positions;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
 use crate::tfeti::torn::{RowVector, TornModel, TornVector};
-use rayon::prelude::*;
 
 /// A solved shape as its derivative needs it.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +30,8 @@ pub struct SolvedShape<'a> {
 pub fn shape_derivative(model: &TornModel, shape: SolvedShape<'_>, adjoint: &TornAdjoint) -> Vec<[f64; 3]> {
     let (problem, map) = (&model.problem, &model.problem.map);
     // Per subdomain: nodes and their sums, one after the other.
-    let sums = |(index, subdomain): (usize, &crate::tfeti::torn::TornSubdomain)| {
-        let number = subdomain.body;
+    let sums = |index: usize| {
+        let number = model.subdomains[index].body;
         if !map.shapes(number) {
             return vec![];
         }
@@ -43,7 +43,7 @@ pub fn shape_derivative(model: &TornModel, shape: SolvedShape<'_>, adjoint: &Tor
         let first = map.nodes(number).start as f64;
         sums.into_iter().flat_map(|(node, [x, y, z])| [first + f64::from(node), x, y, z]).collect()
     };
-    let pieces = model.distribution.complete(model.subdomains.par_iter().enumerate().map(sums).collect());
+    let pieces = model.distribution.complete(parallel::map(model.subdomains.len(), &sums));
     let mut result = problem.no_sensitivities();
     for [node, sums @ ..] in pieces.iter().flat_map(|piece| piece.as_chunks::<4>().0) {
         add_at(&mut result, *node as usize, *sums);

@@ -11,11 +11,11 @@ use crate::equilibrium::RowChange;
 use crate::equilibrium::row_work::{changed_forces, side_forces};
 use crate::equilibrium::trace_work::TraceChanges;
 use crate::linear::entry::{Entry, LANES, Row, vectorized};
+use crate::linear::parallel::for_parts;
 use crate::linear::real::Real;
 use crate::shape::Velocities;
 use crate::tfeti::derivative::shape_derivative::SolvedShape;
 use crate::tfeti::torn::{TornModel, TornSystem, parts_mut};
-use rayon::prelude::*;
 
 /// Torn forces and their resultants along the rigid motions, one column per change of the shape.
 pub struct ShapeLoads<E, const N: usize> {
@@ -36,14 +36,13 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
     ) -> Self {
         debug_assert!(velocities.count() <= LANES * N);
         let mut forces = vec![Row::<E, N>::ZERO; model.interface.owned_count()];
-        let parts = parts_mut(&mut forces, &system.starts).into_par_iter();
-        parts.zip(&model.subdomains).enumerate().for_each(|(index, (forces, subdomain))| {
-            if !model.problem.map.shapes(subdomain.body) {
+        for_parts(parts_mut(&mut forces, &system.starts), &|index, forces| {
+            let number = model.subdomains[index].body;
+            if !model.problem.map.shapes(number) {
                 return;
             }
             let (body, piece) = model.piece(index);
             let u = &shape.displacement.0[system.dofs(index)];
-            let number = subdomain.body;
             let columns = shape_forces((number, body), piece, &shape.positions[number], u, velocities);
             for (dof, force) in forces.iter_mut().enumerate() {
                 columns.iter().enumerate().for_each(|(column, values)| force.set(column, values[dof]));
@@ -67,8 +66,8 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
             }
         }
         let mut resultants = vec![Row::<E, N>::ZERO; MOTIONS * system.parts.len()];
-        let parts = resultants.par_chunks_mut(MOTIONS).zip(&system.parts).enumerate();
-        parts.for_each(|(index, (resultants, part))| {
+        for_parts(resultants.chunks_mut(MOTIONS), &|index, resultants| {
+            let part = &system.parts[index];
             let forces = &forces[system.dofs(index)];
             vectorized(
                 #[inline(always)]

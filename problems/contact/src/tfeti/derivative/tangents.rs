@@ -249,7 +249,7 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
             let openings = self.release(&mut reduced, &image);
             (reduced, openings)
         };
-        let krylov = gcr(&contact.operator.model.sums(), residual, &targets, MAX_KRYLOV, precondition, apply);
+        let krylov = gcr(&contact.operator.model.sums(), residual, &targets, MAX_KRYLOV, &precondition, &apply);
         let factors = krylov.coefficients.iter().map(|factor| factor.zip(&sizes, |factor, size| factor * size));
         let factors: Vec<Row<f64, N>> = factors.collect();
         let terms: Vec<_> = factors.iter().copied().zip(krylov.directions.iter().map(Vec::as_slice)).collect();

@@ -9,12 +9,12 @@ use crate::body::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
 use crate::linear::entry::Entry;
+use crate::linear::parallel;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::dual::coarse_matrix::CondensedCoarse;
 use crate::tfeti::dual::coarse_rows::TornModes;
 use crate::tfeti::dual::rigid_rows::RigidRows;
 use crate::tfeti::torn::{CoarsePattern, Distribution, RowVector, TornModel, TornSystem};
-use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -54,8 +54,8 @@ impl CoarseSpace {
         let mut rows = RigidRows::new();
         let equality_count = constraints.equality_count;
         for first in (0..equality_count).step_by(ROWS_AT_ONCE) {
-            let block = (first..equality_count.min(first + ROWS_AT_ONCE)).into_par_iter();
-            rows.extend(block.map(|row| modes.coarse_row(row)).collect::<Vec<_>>());
+            let count = ROWS_AT_ONCE.min(equality_count - first);
+            rows.extend(parallel::map(count, &|offset| modes.coarse_row(first + offset)));
         }
         rows.extend(modes.contact_rows());
         let resultants: Vec<f64> = system.loads.iter().flat_map(|load| load.resultants.iter().copied()).collect();
@@ -182,7 +182,7 @@ fn gram(
             })
             .collect::<Vec<f64>>()
     };
-    distribution.complete(owned.clone().into_par_iter().map(columns_of).collect()).concat()
+    distribution.complete(parallel::map(owned.len(), &|index| columns_of(owned.start + index))).concat()
 }
 
 #[cfg(test)]

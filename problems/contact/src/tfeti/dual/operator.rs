@@ -2,11 +2,11 @@
 
 use crate::body::MOTIONS;
 use crate::linear::entry::{Entry, Row};
+use crate::linear::parallel::{self, for_parts};
 use crate::linear::real::Real;
 use crate::linear::right_side::RightSide;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector, parts_mut};
-use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -46,7 +46,7 @@ impl<'a> DualOperator<'a> {
 
     /// The product F λ.
     pub fn apply(&self, multipliers: &RowVector) -> RowVector {
-        self.apply_with(multipliers, |factors, part| factors.solve(part))
+        self.apply_with(multipliers, &|factors, part| factors.solve(part))
     }
 
     /// F of a search direction, in the precision asked for.
@@ -59,7 +59,7 @@ impl<'a> DualOperator<'a> {
 
     /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
     fn apply_single(&self, multipliers: &RowVector) -> RowVector {
-        self.apply_with(multipliers, |factors, part| {
+        self.apply_with(multipliers, &|factors, part| {
             factors.balance(part);
             // Brought to size one, so that no unit system leaves the range of single precision.
             let size = part.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
@@ -75,7 +75,7 @@ impl<'a> DualOperator<'a> {
     }
 
     /// B K⁺ Bᵀ λ for a given product with K⁺.
-    fn apply_with(&self, multipliers: &RowVector, solve: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) -> RowVector {
+    fn apply_with(&self, multipliers: &RowVector, solve: &(dyn Fn(&SubdomainFactors, &mut [f64]) + Sync)) -> RowVector {
         self.applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.model.zeros();
         self.solve_subdomains(multipliers, &mut torn.0, solve);
@@ -90,7 +90,7 @@ impl<'a> DualOperator<'a> {
         count: usize,
     ) -> RowVector<Row<E, N>> {
         self.applications.fetch_add(count, Ordering::Relaxed);
-        self.solve_subdomains(multipliers, torn, |factors, part| factors.solve(part));
+        self.solve_subdomains(multipliers, torn, &|factors, part| factors.solve(part));
         self.gather_columns(torn)
     }
 
@@ -109,7 +109,7 @@ impl<'a> DualOperator<'a> {
                 *load = force.zip(load, |force, held| force - held);
             }
         };
-        self.solve_loads(torn, load, |factors, part| factors.solve(part));
+        self.solve_loads(torn, &load, &|factors, part| factors.solve(part));
         self.gather_columns(torn)
     }
 
@@ -118,12 +118,12 @@ impl<'a> DualOperator<'a> {
         &self,
         multipliers: &[V],
         torn: &mut [V],
-        solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
+        solve: &(dyn Fn(&SubdomainFactors, &mut [V]) + Sync),
     ) {
         let load = |first: usize, part: &mut [V]| {
             self.system.rows.transposed.multiply_rows(first, multipliers, part);
         };
-        self.solve_loads(torn, load, solve);
+        self.solve_loads(torn, &load, solve);
     }
 
     /// K⁺ f for forces that `load` fills in subdomain by subdomain, given its first dof, and for a given product with
@@ -131,23 +131,21 @@ impl<'a> DualOperator<'a> {
     fn solve_loads<V: RightSide>(
         &self,
         torn: &mut [V],
-        load: impl Fn(usize, &mut [V]) + Sync,
-        solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
+        load: &(dyn Fn(usize, &mut [V]) + Sync),
+        solve: &(dyn Fn(&SubdomainFactors, &mut [V]) + Sync),
     ) {
         let (system, starts) = (self.system, &self.system.starts);
-        let mut resultants = vec![[V::ZERO; MOTIONS]; if system.is_joined() { system.parts.len() } else { 0 }];
-        let parts = parts_mut(torn, starts).into_par_iter().zip(&system.parts).enumerate();
         if system.is_joined() {
-            parts.zip(&mut resultants).for_each(|((index, (values, factors)), resultants)| {
-                load(starts[index], values);
-                *resultants = factors.resultants_of(values);
-                solve(factors, values);
-            });
+            for_parts(parts_mut(torn, starts), &|index, values| load(starts[index], values));
+            let torn_loads = &*torn;
+            let resultants_of = |index: usize| system.parts[index].resultants_of(&torn_loads[system.dofs(index)]);
+            let resultants = parallel::map(system.parts.len(), &resultants_of);
+            for_parts(parts_mut(torn, starts), &|index, values| solve(&system.parts[index], values));
             system.join(&self.model.constraints.joined, &resultants, torn);
         } else {
-            parts.for_each(|(index, (values, factors))| {
+            for_parts(parts_mut(torn, starts), &|index, values| {
                 load(starts[index], values);
-                solve(factors, values);
+                solve(&system.parts[index], values);
             });
         }
     }
@@ -167,7 +165,7 @@ impl<'a> DualOperator<'a> {
         self.applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.model.zeros();
         let load = |first: usize, part: &mut [f64]| part.copy_from_slice(&forces.0[first..first + part.len()]);
-        self.solve_loads(&mut torn.0, load, |factors, part| factors.solve(part));
+        self.solve_loads(&mut torn.0, &load, &|factors, part| factors.solve(part));
         let parts = self.system.parts.iter().enumerate();
         let own = parts.flat_map(|(index, part)| part.resultants_of(&forces.0[self.system.dofs(index)])).collect();
         let resultants = self.model.clusters.gather(&self.system.cluster_resultants(own), MOTIONS);
@@ -177,12 +175,11 @@ impl<'a> DualOperator<'a> {
     /// The displacements K⁺ f under the loads.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
-        let parts = parts_mut(&mut torn.0, &self.system.starts).into_par_iter();
-        parts.zip(&self.system.loads).for_each(|(part, load)| {
-            if !load.displacement.is_empty() {
-                part.copy_from_slice(&load.displacement);
-            }
-        });
+        let parts = parts_mut(&mut torn.0, &self.system.starts);
+        for (part, load) in parts.into_iter().zip(&self.system.loads).filter(|(_, load)| !load.displacement.is_empty())
+        {
+            part.copy_from_slice(&load.displacement);
+        }
         let resultants: Vec<[f64; MOTIONS]> = self.system.loads.iter().map(|load| load.resultants).collect();
         self.system.join(&self.model.constraints.joined, &resultants, &mut torn.0);
         torn
@@ -192,12 +189,11 @@ impl<'a> DualOperator<'a> {
     /// method.md (4.2).
     pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
         let mut torn = self.model.zeros();
-        self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.solve(part));
+        self.solve_subdomains(multipliers, &mut torn.0, &|factors, part| factors.solve(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
         let own = &amplitudes[MOTIONS * self.model.clusters.owned().start..];
-        let parts = parts_mut(&mut loaded.0, &self.system.starts).into_par_iter().zip(&self.system.parts).enumerate();
-        parts.for_each(|(index, (values, part))| {
-            for (mode, amplitude) in part.modes.iter().zip(self.system.amplitudes_of(index, own)) {
+        for_parts(parts_mut(&mut loaded.0, &self.system.starts), &|index, values| {
+            for (mode, amplitude) in self.system.parts[index].modes.iter().zip(self.system.amplitudes_of(index, own)) {
                 add_scaled(values, amplitude, mode);
             }
         });

@@ -7,9 +7,9 @@
 //! K is the boundary stiffness of a subdomain: for nearly incompressible material, that of its compressible neighbour.
 
 use crate::linear::entry::vectorized;
+use crate::linear::parallel::for_parts;
 use crate::linear::right_side::RightSide;
 use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem, parts_mut};
-use rayon::prelude::*;
 
 /// A preconditioner of one factored system.
 #[derive(Debug, Clone)]
@@ -39,11 +39,10 @@ impl<'a> Preconditioner<'a> {
             return result;
         }
         let (rows, starts) = (&self.system.rows, &self.system.starts);
-        let parts = parts_mut(torn, starts).into_par_iter().zip(&self.system.parts).enumerate();
-        parts.for_each(|(index, (values, factors))| {
+        for_parts(parts_mut(torn, starts), &|index, values| {
             rows.weighted_transposed.multiply_rows(starts[index], residual, values);
             if values.iter().any(|entry| *entry != V::ZERO) {
-                self.apply_subdomain(index, factors, values);
+                self.apply_subdomain(index, &self.system.parts[index], values);
             }
         });
         self.model.rows_times(&rows.weighted, torn)

@@ -2,7 +2,7 @@
 
 use crate::body::MOTIONS;
 use crate::linear::entry::{Entry, vectorized};
-use rayon::prelude::*;
+use crate::linear::parallel::for_parts;
 use std::ops::Range;
 
 /// What a row of B does to the six rigid amplitudes of a cluster.
@@ -71,7 +71,7 @@ impl RigidRows {
     /// Gᵀ a, where the lists are rows.
     pub fn jumps<V: Entry>(&self, amplitudes: &[V]) -> Vec<V> {
         let mut result = vec![V::ZERO; self.count()];
-        result.par_chunks_mut(LISTS_AT_ONCE).enumerate().for_each(|(chunk, result)| {
+        for_parts(result.chunks_mut(LISTS_AT_ONCE), &|chunk, result| {
             vectorized(
                 #[inline(always)]
                 || {
@@ -90,7 +90,7 @@ impl RigidRows {
     /// G λ, six entries per cluster, where the lists are clusters.
     pub fn resultants<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
         let mut result = vec![V::ZERO; MOTIONS * self.count()];
-        result.par_chunks_exact_mut(MOTIONS).enumerate().for_each(|(cluster, six)| {
+        for_parts(result.chunks_exact_mut(MOTIONS), &|cluster, six| {
             vectorized(
                 #[inline(always)]
                 || {

@@ -3,13 +3,13 @@
 use crate::body::loads::piece_loads;
 use crate::equilibrium::Configuration;
 use crate::error::ContactError;
+use crate::linear::parallel;
 use crate::shelf::Factored;
 use crate::tfeti::torn::cluster_factors::ClusterFactors;
 use crate::tfeti::torn::factored_body::FactoredBody;
 use crate::tfeti::torn::factors::{SubdomainFactors, SubdomainLoad};
 use crate::tfeti::torn::model::{LoadedBody, TornModel, TornSubdomain};
 use crate::tfeti::torn::system::TornSystem;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 impl TornModel {
@@ -79,24 +79,29 @@ impl TornModel {
                 (factored, count)
             }
         };
-        let load = |(index, part): &(usize, Arc<SubdomainFactors>)| {
+        let parts = &factored.factors.parts;
+        let load = |number: usize| {
+            let (index, part) = &parts[number];
             let (body, piece) = self.piece(*index);
             part.loaded(piece_loads(body, piece, positions))
         };
-        let loads = factored.factors.parts.par_iter().map(load).collect();
+        let loads = parallel::map(parts.len(), &load);
         Ok(((factored, loads), count))
     }
 
     /// The factors of the subdomains and clusters of a body in this process.
     fn factorize_body(&self, body: usize, positions: &[[f64; 3]]) -> Result<FactoredBody, ContactError> {
-        let factor = |(index, subdomain): (usize, &TornSubdomain)| {
+        let members = self.subdomains.iter().enumerate().filter(|(_, subdomain)| subdomain.body == body);
+        let own: Vec<(usize, &TornSubdomain)> = members.collect();
+        let factor = |number: usize| {
+            let (index, subdomain) = own[number];
             let (body, piece) = self.piece(index);
             let interior = subdomain.interior.as_deref();
             let factors = SubdomainFactors::new((body, piece), &subdomain.symbolic, positions, interior)?;
             Ok((index, Arc::new(factors)))
         };
-        let own = self.subdomains.par_iter().enumerate().filter(|(_, subdomain)| subdomain.body == body);
-        let parts: Result<Vec<(usize, Arc<SubdomainFactors>)>, ContactError> = own.map(factor).collect();
+        let parts: Result<Vec<(usize, Arc<SubdomainFactors>)>, ContactError> =
+            parallel::map(own.len(), &factor).into_iter().collect();
         let factored =
             parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, positions, &parts)?, parts }));
         self.distribution.agreed(factored)
@@ -112,9 +117,11 @@ impl TornModel {
         if !self.numbering.is_joined() {
             return Ok(vec![]);
         }
-        let own = (0..self.cluster_starts.len() - 1).into_par_iter();
-        let own = own.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body);
-        let join = |cluster: usize| {
+        let clusters = 0..self.cluster_starts.len() - 1;
+        let own: Vec<usize> =
+            clusters.filter(|&cluster| self.subdomains[self.cluster_starts[cluster]].body == body).collect();
+        let join = |number: usize| {
+            let cluster = own[number];
             let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
             let places = |index: usize| self.piece(index).1.positions(positions).collect::<Vec<[f64; 3]>>();
             let coordinates: Vec<Vec<[f64; 3]>> = members.clone().map(places).collect();
@@ -125,6 +132,6 @@ impl TornModel {
             let factors = ClusterFactors::new(&self.constraints.joined[cluster], &parts, &coordinates, stiffness)?;
             Ok((cluster, Arc::new(factors)))
         };
-        own.map(join).collect()
+        parallel::map(own.len(), &join).into_iter().collect()
     }
 }

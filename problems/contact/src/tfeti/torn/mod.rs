@@ -32,7 +32,7 @@ pub use constraints::Constraints;
 pub use distribution::Distribution;
 pub use factored_body::TornShelf;
 pub use factors::SubdomainFactors;
-pub use model::{TornModel, TornSubdomain};
+pub use model::TornModel;
 pub use options::TornOptions;
 pub use preconditioner_kind::PreconditionerKind;
 pub use recovery::{torn_loads, whole_bodies};

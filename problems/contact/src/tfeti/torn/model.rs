@@ -9,6 +9,7 @@ use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
+use crate::linear::parallel;
 use crate::linear::vector::{dot, norm};
 use crate::shelf::Factored;
 use crate::tfeti::torn::cluster_factors::moves_as_one_body;
@@ -25,7 +26,6 @@ use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
 use crate::tfeti::torn::row_sums::RowSums;
 use crate::tfeti::torn::system::TornSystem;
 use crate::tfeti::torn::vectors::{RowVector, TornVector};
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
@@ -408,9 +408,11 @@ fn check_motions(
     };
     let own = distribution.owned();
     let first = if own.is_empty() { 0 } else { numbering.cluster_of(own.start) };
-    let loose = constraints.joined.par_iter().enumerate().any(|(index, rows)| {
-        !moves_as_one_body(rows, &numbering.members(first + index).map(nodes).collect::<Vec<_>>())
+    let loose = parallel::map(constraints.joined.len(), &|index| {
+        let places: Vec<_> = numbering.members(first + index).map(nodes).collect();
+        !moves_as_one_body(&constraints.joined[index], &places)
     });
+    let loose = loose.contains(&true);
     let reason = "their inner nodes do not hold the subdomains together; subdomains need more cells".to_string();
     match distribution.communication().agree(loose.then_some(reason)) {
         Some(reason) => Err(ContactError::Clusters { count: numbering.cluster_count(), reason }),

@@ -4,10 +4,10 @@
 //! Σ over rows of B_E = Σ over subdomains of the rows that they own, by the tree of the distribution;   contact rows are everywhere
 //! ```
 
+use crate::linear::parallel::for_parts;
 use crate::linear::sums::Sums;
 use crate::tfeti::torn::constraints::Constraints;
 use crate::tfeti::torn::distribution::Distribution;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Sums over the rows of all processes.
@@ -29,11 +29,11 @@ impl Sums for RowSums<'_> {
         }
         let bounds = &self.constraints.owned_rows;
         let mut terms = vec![0.0; count * (bounds.len() - 1)];
-        let part = |(sums, pair): (&mut [f64], &[usize])| of(pair[0]..pair[1], sums);
+        let part = |index: usize, sums: &mut [f64]| of(bounds[index]..bounds[index + 1], sums);
         if count * length < PARALLEL_PRODUCTS {
-            terms.chunks_exact_mut(count).zip(bounds.windows(2)).for_each(part);
+            terms.chunks_exact_mut(count).enumerate().for_each(|(index, sums)| part(index, sums));
         } else {
-            terms.par_chunks_exact_mut(count).zip(bounds.par_windows(2)).for_each(part);
+            for_parts(terms.chunks_exact_mut(count), &part);
         }
         let mut sums = self.distribution.sum(&terms, count);
         of(self.constraints.equality_count..length, &mut sums);

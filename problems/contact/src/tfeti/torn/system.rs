@@ -2,6 +2,7 @@
 
 use crate::body::MOTIONS;
 use crate::linear::entry::Entry;
+use crate::linear::parallel;
 use crate::linear::right_side::RightSide;
 use crate::shelf::Factored;
 use crate::tfeti::torn::cluster_factors::ClusterFactors;
@@ -10,7 +11,6 @@ use crate::tfeti::torn::constraints::TornRows;
 use crate::tfeti::torn::factored_body::FactoredBody;
 use crate::tfeti::torn::factors::{SubdomainFactors, SubdomainLoad};
 use crate::tfeti::torn::vectors::parts_mut;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -99,17 +99,15 @@ impl TornSystem {
         if !self.is_joined() {
             return;
         }
-        let reactions: Vec<Vec<V>> = (0..self.clusters.len())
-            .into_par_iter()
-            .map(|cluster| {
-                let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
-                let free: Vec<&[V]> = members.clone().map(|index| &torn[self.dofs(index)]).collect();
-                self.clusters[cluster].reactions(&rows[cluster], &free, &resultants[members])
-            })
-            .collect();
-        parts_mut(torn, &self.starts).into_par_iter().zip(&self.parts).enumerate().for_each(|(index, (x, part))| {
+        let free = &*torn;
+        let reactions: Vec<Vec<V>> = parallel::map(self.clusters.len(), &|cluster| {
+            let members = self.cluster_starts[cluster]..self.cluster_starts[cluster + 1];
+            let free: Vec<&[V]> = members.clone().map(|index| &free[self.dofs(index)]).collect();
+            self.clusters[cluster].reactions(&rows[cluster], &free, &resultants[members])
+        });
+        parallel::for_parts(parts_mut(torn, &self.starts), &|index, x| {
             if let Some((cluster, place)) = self.cluster_of(index) {
-                self.clusters[cluster].join(&rows[cluster], place, part, &reactions[cluster], x);
+                self.clusters[cluster].join(&rows[cluster], place, &self.parts[index], &reactions[cluster], x);
             }
         });
     }
