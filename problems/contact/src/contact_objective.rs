@@ -8,8 +8,8 @@ use crate::error::SceneError;
 use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCases, Over, WeightedCase};
 use crate::scene::Scene;
 use crate::shape::LatticeShape;
-use nonsmooth::composite::OuterFunction;
 use nonsmooth::ConstraintPiece;
+use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
     Answer, CompositeObjective, ConstraintEvaluation, ConstraintKind, CostGradient, Evaluation, Matrix,
     NonsmoothObjective, OracleError, OutputJacobian, Request, StateSolver, Vector,

@@ -57,19 +57,6 @@ pub enum FigureError {
         /// How many points there are.
         count: usize,
     },
-    /// A factor between points and pixels that gives no picture.
-    #[cfg(feature = "png")]
-    #[error("pixels per point are {value}, allowed are numbers > 0 that give at most {most} pixels in all")]
-    Scale {
-        /// Enlargement asked for, pixels per point.
-        value: f64,
-        /// Largest number of pixels allowed.
-        most: u64,
-    },
-    /// The SVG text was not understood by the renderer, or the picture not written.
-    #[cfg(feature = "png")]
-    #[error("the figure cannot be drawn: {0}")]
-    Drawing(String),
 }
 
 /// Checks that every number of a list is allowed.

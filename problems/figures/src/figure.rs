@@ -21,14 +21,4 @@ impl Figure {
         let parts = std::mem::take(&mut canvas.parts);
         Self { name: name.to_owned(), title: title.to_owned(), svg: canvas.finish(name, title), parts }
     }
-
-    /// The figure as a PNG file with `scale` pixels per point of the SVG; 2 suits screens, 4 suits print.
-    ///
-    /// # Errors
-    /// [`FigureError::Scale`](super::FigureError::Scale) for a factor that gives no pixel or more than 100 million,
-    /// [`FigureError::Drawing`](super::FigureError::Drawing) if the SVG text was changed into something that is none.
-    #[cfg(feature = "png")]
-    pub fn png(&self, scale: f64) -> Result<Vec<u8>, super::error::FigureError> {
-        super::png::png(&self.svg, scale)
-    }
 }

@@ -1,8 +1,7 @@
 //! Scientific figures as SVG, and HTML pages that hold them: without other programs, system libraries or system fonts.
 //!
 //! ```text
-//! numbers ─┬─ Map, Classes, Lines, Convergence ─── Figure ─┬─ svg
-//!          │                                             └─ png (feature `png`: resvg, fonts of its own)
+//! numbers ─┬─ Map, Classes, Lines, Convergence ─── Figure (SVG)
 //!          └─ Space ─ SpaceView: a view in three dimensions, which the script of a page draws (assets/viewer.js)
 //! scale (ticks), chart (axes), panel_layout (panels), marks (legends), plan (meshes in a plane), levels (areas),
 //! view (direction of view), regions (borders of areas), canvas (SVG text), packing (numbers of a SpaceView)
@@ -11,8 +10,7 @@
 //! [`box_faces`] are those of structured grids.
 //!
 //! The package knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes. In
-//! titles, captions and units `^{…}` is a superscript. The font of PNG files has Latin and Greek letters, ₀ … ₉, ∂, √,
-//! ∞ and the usual signs; ⟨ ⟩ ‖ ∇ → come from a second one.
+//! titles, captions and units `^{…}` is a superscript.
 
 mod canvas;
 mod chart;
@@ -30,8 +28,6 @@ mod packing;
 pub mod page;
 mod panel_layout;
 mod plan;
-#[cfg(feature = "png")]
-mod png;
 mod regions;
 mod scale;
 mod space;

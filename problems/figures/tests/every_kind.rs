@@ -1,4 +1,4 @@
-//! Every kind of figure as SVG and, with the feature `png`, as PNG: titles hold signs that XML reserves, and
+//! Every kind of figure as SVG: titles hold signs that XML reserves, and
 //! superscripts.
 
 use figures::{
@@ -187,32 +187,6 @@ fn axes_have_their_ticks_where_the_numbers_are() {
     // A label stands in the middle of its height.
     let heights = [number(&points[1], "cy"), number(&label("10", "end"), "y")].map(|height| height.expect("a height"));
     assert!((heights[1] - heights[0] - 4.2).abs() < 0.11, "{heights:?}");
-}
-
-#[cfg(feature = "png")]
-#[test]
-fn png_files_have_the_size_asked_for() {
-    for figure in all() {
-        let picture = figure.png(2.0).expect("a picture");
-        assert!(picture.starts_with(b"\x89PNG\r\n\x1a\n") && picture.len() > 5000, "{}", figure.name);
-        let document = roxmltree::Document::parse(&figure.svg).expect("XML");
-        for (at, side) in [(16, "width"), (20, "height")] {
-            let points: f64 = document.root_element().attribute(side).expect("a size").parse().expect("a number");
-            let pixels = u32::from_be_bytes(picture[at..at + 4].try_into().expect("four bytes"));
-            assert_eq!(f64::from(pixels), 2.0 * points, "{}: {side}", figure.name);
-        }
-    }
-}
-
-#[cfg(feature = "png")]
-#[test]
-fn png_is_refused_for_impossible_scales_and_text_that_is_no_svg() {
-    let [mut figure, ..] = plots();
-    for scale in [0.0, -1.0, f64::NAN, 1e4, f64::INFINITY] {
-        assert!(matches!(figure.png(scale), Err(figures::FigureError::Scale { .. })), "{scale}");
-    }
-    figure.svg.truncate(100);
-    assert!(matches!(figure.png(1.0), Err(figures::FigureError::Drawing(_))));
 }
 
 /// A map eight times as tall as wide, with a colour bar behind every panel.

@@ -118,7 +118,7 @@ pub struct OutputSection {
     /// none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
-    /// Whether pictures are drawn into the folder, as SVG and, by a program built with the feature `png`, as PNG.
+    /// Whether pictures are drawn into the folder, as SVG.
     pub pictures: bool,
     /// Whether displacements, stresses and the contact boundary are written for ParaView.
     pub vtk: bool,

@@ -15,16 +15,6 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Pixels of a PNG per point of the SVG.
-#[cfg(feature = "png")]
-const PNG_SCALE: f64 = 2.0;
-/// Said once by a program without the feature `png`.
-#[cfg(not(feature = "png"))]
-const HOW_TO_GET_PNG: &str = "pictures are written as SVG; built with --features png, the program writes PNG as well";
-
-/// Endings of the files of a picture.
-pub const PICTURE_ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
-
 /// Files of a run: what was asked for, where it started, and, when it has ended, its report.
 pub const SCENE: &str = "scene.toml";
 pub const START: &str = "start.json";
@@ -199,20 +189,12 @@ impl Folder {
         written.map_err(unwritable(&path))
     }
 
-    /// Writes a figure as SVG and, with the feature `png`, as PNG; without, stderr says once how to get PNG.
+    /// Writes a figure as SVG.
     ///
     /// # Errors
-    /// As [`write`](Self::write); [`Failure::Computation`] if it cannot be drawn.
+    /// As [`write`](Self::write).
     pub fn draw(&self, figure: &Figure) -> Result<(), Failure> {
-        self.write(&format!("{}.svg", figure.name), &figure.svg)?;
-        #[cfg(feature = "png")]
-        self.write(&format!("{}.png", figure.name), figure.png(PNG_SCALE).map_err(Failure::computation)?)?;
-        #[cfg(not(feature = "png"))]
-        {
-            static SAID: std::sync::Once = std::sync::Once::new();
-            SAID.call_once(|| notice(HOW_TO_GET_PNG));
-        }
-        Ok(())
+        self.write(&format!("{}.svg", figure.name), &figure.svg)
     }
 }
 

@@ -26,13 +26,11 @@ fn names(folder: &Path) -> BTreeSet<String> {
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-/// Every figure exists as SVG (and as PNG, if the program can), is well-formed, and stands in the page, which loads
+/// Every figure exists as SVG, is well-formed, and stands in the page, which loads
 /// nothing else; every file that the page names exists, and so does every name inside it, once.
 fn check_page(scratch: &Path, folder: &str, figures: &[&str]) -> String {
     let found = names(&scratch.join(folder).join("figures"));
-    let endings: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
-    let expected =
-        figures.iter().flat_map(|name| endings.iter().map(move |ending| format!("{name}.{ending}"))).collect();
+    let expected = figures.iter().map(|name| format!("{name}.svg")).collect();
     assert_eq!(found, expected, "{folder}");
     let page = read(scratch, &format!("{folder}/report.html"));
     for name in figures {

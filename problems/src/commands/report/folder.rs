@@ -1,7 +1,7 @@
 //! The folder of a report while it is filled: its files with what they hold, and the parts of the page so far.
 
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
+use crate::commands::folder::{Folder, REPORT, SCENE, START, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::look::setup;
@@ -80,9 +80,7 @@ impl<'a> ReportFolder<'a> {
     }
 
     fn keep(&mut self, figure: &Figure, what: &str) -> Result<(), Failure> {
-        for ending in PICTURE_ENDINGS {
-            self.announce(&format!("{FIGURES}/{}.{ending}", figure.name), what);
-        }
+        self.announce(&format!("{FIGURES}/{}.svg", figure.name), what);
         self.folder.within(FIGURES)?.draw(figure)
     }
 

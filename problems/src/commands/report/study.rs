@@ -1,7 +1,7 @@
 //! The files of a study: its table, curves over the values, pressures and surfaces of its rows, and the page.
 
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, STUDY};
+use crate::commands::folder::{Folder, REPORT, SCENE, START, STUDY};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::report::sections;
 use crate::commands::report::stamp::stamp;
@@ -33,10 +33,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     if loaded.case.output.pictures {
         for (figure, caption) in drawn(loaded, study).map_err(Failure::computation)? {
             folder.within(FIGURES)?.draw(&figure)?;
-            for ending in PICTURE_ENDINGS {
-                let path = format!("{FIGURES}/{}.{ending}", figure.name);
-                files.push(File { path, what: figure.title.clone() });
-            }
+            files.push(File { path: format!("{FIGURES}/{}.svg", figure.name), what: figure.title.clone() });
             pictures.push(Block::Picture { figure, caption: caption.into() });
         }
     }
