@@ -1,4 +1,4 @@
-//! The files of a study: its table, curves over the values, pressures and surfaces of its rows, and the page.
+//! The files of a study: its table, curves over the values, and the page. Optimized rows have reports of their own.
 
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, SCENE, START, STUDY};
@@ -6,24 +6,15 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::report::sections;
 use crate::commands::report::stamp::stamp;
 use crate::commands::run_kind::RUN;
-use crate::commands::study::row::{Outcome, Picture, Row, Solved};
+use crate::commands::study::row::{Outcome, Row, Solved};
 use crate::commands::study::table::{StudyJson, row_folder, values};
 use crate::commands::study::varied::parts;
 use figures::page::{Block, File, Page, Section};
-use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel};
+use figures::{Curve, Figure, FigureError, LinePanel, Lines};
 
 /// Folder of the figures.
 const FIGURES: &str = "figures";
-/// Most rows whose pressures and surfaces are drawn.
-const MAX_SHOWN: usize = 12;
-/// Rows in one figure.
-const PER_FIGURE: usize = 3;
-
 const CURVES: &str = "Every mark is a row that has a result. The axis begins at zero.";
-const PRESSURES: &str = "Contact pressure of each row over the plan of the contact surface; a ring marks the peak. The panels of one picture \
-    have one scale.";
-const SURFACES: &str = "The contact surface of each row without load, seen along its normal: heights counted from their mean, or \
-    displacements by a lattice. The panels of one picture have one scale.";
 
 /// Writes table, figures and page of a study.
 pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> Result<(), Failure> {
@@ -31,10 +22,12 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     folder.write("study.csv", study.csv())?;
     let mut pictures = Vec::new();
     if loaded.case.output.pictures {
-        for (figure, caption) in drawn(loaded, study).map_err(Failure::computation)? {
+        let shown: Vec<Shown<'_>> = study.rows.iter().filter_map(Shown::of).collect();
+        for figure in curves(study, &shown) {
+            let figure = figure.map_err(Failure::computation)?;
             folder.within(FIGURES)?.draw(&figure)?;
             files.push(File { path: format!("{FIGURES}/{}.svg", figure.name), what: figure.title.clone() });
-            pictures.push(Block::Picture { figure, caption: caption.into() });
+            pictures.push(Block::Picture { figure, caption: CURVES.into() });
         }
     }
     if !loaded.case.output.report {
@@ -47,7 +40,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
         (START, "the control heights at which rows begin, if they were given"),
         (STUDY, "what is varied, for --resume"),
         (RUN, "that this is a study, for --resume"),
-        ("rows.json", "the rows so far, with controls, pressures and heights"),
+        ("rows.json", "the rows so far, with their controls"),
     ] {
         files.push(File { path: path.into(), what: what.into() });
     }
@@ -57,13 +50,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
             files.push(File { path: format!("{}/report.html", row_folder(number)), what });
         }
     }
-    let failed = study.rows.iter().filter(|row| matches!(row.outcome, Outcome::Failed(_))).count();
     let varied: Vec<&str> = study.vary.iter().map(|varied| varied.name()).collect();
-    let solved = study.rows.len() - failed;
-    if solved > MAX_SHOWN && !pictures.is_empty() {
-        pictures
-            .push(Block::Text(format!("Pressures and surfaces are drawn for the first {MAX_SHOWN} of {solved} rows.")));
-    }
     let page = Page {
         title: format!("{}: study of {}", loaded.case.scene.name, varied.join(", ")),
         lead: format!("Rows: {}.{}", study.counted(), unconfirmed(study)),
@@ -111,46 +98,6 @@ impl<'a> Shown<'a> {
             Outcome::Failed(_) => None,
         }
     }
-}
-
-fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'static str)>, FigureError> {
-    let shown: Vec<Shown<'_>> = study.rows.iter().filter_map(Shown::of).collect();
-    let mut figures = Vec::new();
-    for figure in curves(study, &shown) {
-        figures.push((figure?, CURVES));
-    }
-    let title = |what: &str| format!("{}: {what}", loaded.case.scene.name);
-    for (number, rows) in (1..).zip(shown.chunks(PER_FIGURE)).take(MAX_SHOWN / PER_FIGURE) {
-        // All rows are of one scene, so that they have the same surfaces.
-        for (index, picture) in rows[0].solved.pictures().enumerate() {
-            let Picture { suffix, owner, .. } = picture;
-            let changes = study.vary.iter().any(|varied| varied.changes_shapes());
-            if !picture.pressures.is_empty() {
-                let of = if owner.is_empty() { String::new() } else { format!(", {owner}") };
-                let name = format!("pressures_{number}{suffix}");
-                let plan = Plan {
-                    quantity: "pressure",
-                    unit: "MPa",
-                    contours: false,
-                    values: |picture| (&picture.pressures, ""),
-                };
-                figures.push((plan.figure(name, title(&format!("contact pressure{of}")), index, rows)?, PRESSURES));
-            }
-            if !picture.relief.is_empty() && (changes || rows[0].solved.optimization.is_some()) {
-                let owner = if owner.is_empty() { "contact surface" } else { owner };
-                let name = format!("surfaces_{number}{suffix}");
-                let plan = Plan {
-                    quantity: &picture.quantity,
-                    unit: "mm",
-                    contours: true,
-                    values: |picture| (&picture.relief, &picture.mean),
-                };
-                let title = title(&format!("{owner}, without load"));
-                figures.push((plan.figure(name, title, index, rows)?, SURFACES));
-            }
-        }
-    }
-    Ok(figures)
 }
 
 /// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows
@@ -206,36 +153,4 @@ fn caption(row: &Row) -> String {
     let options = row.options.iter().map(|option| <[&str; 2]>::from(parts(option)).join(" "));
     let found = Shown::of(row).and_then(|shown| shown.solved.optimization.as_ref()).filter(|run| !run.confirmed);
     options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
-}
-
-/// What rows show on a contact surface: quantity, unit, and the values of a row with what its caption adds.
-struct Plan<'a> {
-    quantity: &'a str,
-    unit: &'a str,
-    contours: bool,
-    values: fn(&Picture) -> (&[f64], &str),
-}
-
-impl Plan<'_> {
-    /// The values of rows on the contact surface with this number, seen along its normal.
-    fn figure(&self, name: String, title: String, surface: usize, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
-        let panel = |Shown { row, solved }: &Shown<'_>| {
-            let picture = solved.pictures().nth(surface)?;
-            let (values, words) = (self.values)(picture);
-            let (points, faces) = (picture.plan.clone(), picture.faces.clone());
-            Some(MapPanel { caption: caption(row) + words, points, faces, values: values.to_vec() })
-        };
-        let picture = rows.first().and_then(|shown| shown.solved.pictures().nth(surface));
-        Map {
-            name,
-            title,
-            quantity: self.quantity.into(),
-            unit: self.unit.into(),
-            axes: picture.map_or_else(Default::default, |picture| picture.axes.clone()),
-            scales: ColourScales::Common,
-            contours: self.contours,
-            panels: rows.iter().filter_map(panel).collect(),
-        }
-        .figure()
-    }
 }

@@ -7,7 +7,6 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
-use crate::commands::report::{ContactSurface, Relief};
 use crate::commands::shape_facts::is_better;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, checks};
 use crate::commands::study::plan::{RowOptions, options};
@@ -62,11 +61,6 @@ pub struct Solved {
     pub optimization: Option<Optimized>,
     /// Codes of what is implausible about the state, unless that is not checked.
     pub warnings: Vec<String>,
-    /// What the pictures show: the first contact surface.
-    pub picture: Picture,
-    /// Further contact surfaces.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub further_pictures: Vec<Picture>,
 }
 
 /// The optimization of a row.
@@ -89,69 +83,7 @@ pub struct Optimized {
     pub had_to_move: bool,
 }
 
-/// A contact surface of a row for pictures.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Picture {
-    /// What names of pictures end with; nothing where the scene has one contact.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub suffix: String,
-    /// What titles call the surface, where the scene has not the short form.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub owner: String,
-    /// Names of the axes of the plan.
-    pub axes: [String; 2],
-    /// Nodes of the surface in the plan, mm.
-    pub plan: Vec<[f64; 2]>,
-    /// Its facets by the places of their nodes.
-    pub faces: Vec<Vec<usize>>,
-    /// Contact pressure per node, MPa; none on a master face.
-    pub pressures: Vec<f64>,
-    /// What the relief is.
-    pub quantity: String,
-    /// Words that tell the mean of heights, or none.
-    pub mean: String,
-    /// Relief of the surface per node, mm; none where no control moves it.
-    pub relief: Vec<f64>,
-}
-
-impl Picture {
-    /// The contact surfaces of a shape: slave faces with their pressures, and other faces that controls move.
-    fn all(objective: &ContactObjective, shape: &SolvedShape) -> Vec<Self> {
-        let problem = objective.solver().problem();
-        let of = |surface: &ContactSurface| Self {
-            suffix: surface.suffix.clone(),
-            owner: if surface.label.is_empty() { String::new() } else { surface.owner.clone() },
-            axes: surface.axis_names(),
-            plan: surface.plan(),
-            faces: surface.faces(),
-            ..Self::default()
-        };
-        let pressures = objective.pressures(shape.state());
-        let slaves = ContactSurface::all(problem);
-        let with = |surface: &ContactSurface| Self { pressures: surface.spread(&pressures, 0.0), ..of(surface) };
-        let mut found: Vec<Self> = slaves.iter().map(with).collect();
-        let positions = problem.map.positions(shape.controls.as_slice());
-        for relief in Relief::all(problem) {
-            let (mean, values) = relief.of("", &positions);
-            let surface = relief.surface();
-            let slave = slaves.iter().position(|own| own.contact == surface.contact && own.body == surface.body);
-            let index = slave.unwrap_or_else(|| {
-                found.push(of(surface));
-                found.len() - 1
-            });
-            let quantity = relief.quantity().into();
-            found[index] = Self { quantity, mean, relief: values, ..found[index].clone() };
-        }
-        found
-    }
-}
-
 impl Solved {
-    /// The contact surfaces.
-    pub fn pictures(&self) -> impl Iterator<Item = &Picture> {
-        std::iter::once(&self.picture).chain(&self.further_pictures)
-    }
-
     /// Whether it was optimized and its shape is no better than the start.
     pub fn is_unchanged(&self) -> bool {
         self.optimization
@@ -292,8 +224,6 @@ fn optimum(
 /// What a row keeps of a solved shape.
 fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'_>) -> Result<Solved, Failure> {
     let forces = &shape.state().forces;
-    let mut pictures = Picture::all(objective, shape).into_iter();
-    let picture = pictures.next().unwrap_or_default();
     Ok(Solved {
         objective: shape.value,
         objective_unit: plain_unit(&objective.unit()),
@@ -308,7 +238,5 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
             .into_iter()
             .map(|warning| warning.code.to_owned())
             .collect(),
-        picture,
-        further_pictures: pictures.collect(),
     })
 }

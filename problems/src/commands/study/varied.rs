@@ -57,12 +57,6 @@ impl Varied {
         fields.first().unwrap_or(&&*self.name)
     }
 
-    /// Whether rows that differ in it have different shapes, though they are not optimized.
-    pub fn changes_shapes(&self) -> bool {
-        let field = self.field();
-        field.contains("lattice.") || self.name == HEIGHT_ERROR
-    }
-
     /// Its values, as they are typed.
     pub fn values(&self) -> &[String] {
         &self.values
