@@ -1,9 +1,9 @@
 //! Several runs that lead to one result: starts, subspaces, objectives in turn.
 //!
 //! A [`Stage`] is a run that has not begun: an objective, a set, a start, settings and, if the run moves in a subspace,
-//! its directions. [`run_in_turn`] asks for one stage after the other. Whoever chooses the next stage knows how the runs
-//! before it have ended; whoever performs a stage decides about journals, progress and interruptions. Stages that are
-//! chosen from reports alone are chosen again in the same way when a run is repeated from its journals.
+//! its directions. [`run_in_turn`] asks for one stage after the other. Whoever chooses the next stage knows how the
+//! runs before it have ended; whoever performs a stage decides about journals, progress and interruptions. Stages that
+//! are chosen from reports alone are chosen again in the same way when a run is repeated from its journals.
 //!
 //! ```
 //! use nonsmooth::runs::{Ended, Stage, run_in_turn, seeded_start};
