@@ -235,8 +235,8 @@ impl BundleState {
         (self.center_id, self.next_id) = (self.next_id, self.next_id + 1);
     }
 
-    /// The highest value at the start and in the bundle. The scale of Θ refers to it rather than to the highest value of
-    /// the run: one value far above all that the bundle keeps would make large decreases count as small.
+    /// The highest value at the start and in the bundle. The scale of Θ refers to it rather than to the highest value
+    /// of the run: one value far above all that the bundle keeps would make large decreases count as small.
     pub(crate) fn highest_kept(&self) -> f64 {
         self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max)
     }

@@ -89,8 +89,8 @@ fn judged(at: &Position<'_>, evidence: &Evidence) -> Verdict {
 pub(crate) enum Near {
     /// The cuts next to the center promise as little as all cuts.
     Confirmed,
-    /// Those cuts promise more, although their subgradients nearly cancel: only the curvature of Θ, which cuts do not show,
-    /// bounds what is left.
+    /// Those cuts promise more, although their subgradients nearly cancel: only the curvature of Θ, which cuts do not
+    /// show, bounds what is left.
     Falls,
     /// The subgradients of those cuts do not cancel.
     Open,

@@ -51,7 +51,8 @@ pub enum Termination {
     },
     /// The decrease that the model promises is below the noise of the oracle.
     NoiseLimit {
-        /// The decrease that noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
+        /// The decrease that noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is
+        /// convex.
         estimate: f64,
     },
     /// The step has become too short to change the variables while the model still promises decrease: values and

@@ -1,6 +1,5 @@
 //! A trial point, and how it is made admissible.
 
-use super::proposer::Position;
 use crate::bundle::constrained::Tangent;
 use crate::bundle::cut::LEAST_ACTIVE_MULTIPLIER;
 use crate::bundle::state::BundleState;
@@ -126,15 +125,16 @@ impl Proposal {
     /// cuts; the predicted decrease is `−change(step)` and must be positive.
     pub(crate) fn replaced(
         &self,
-        at: &Position<'_>,
+        set: &Polyhedron,
+        state: &BundleState,
         step: Vector,
         weight: f64,
         origin: Origin,
         change: impl Fn(&Vector) -> f64,
     ) -> Result<Self, SubproblemError> {
-        let trial = &at.state.center + &step;
+        let trial = &state.center + &step;
         let other = Self { trial, step, weight, origin, violation: 0.0, ..self.clone() };
-        let mut other = other.admissible(at.set, at.state)?;
+        let mut other = other.admissible(set, state)?;
         other.predicted_decrease = -change(&other.step);
         if other.predicted_decrease > 0.0 && other.step_length.is_finite() {
             Ok(other)

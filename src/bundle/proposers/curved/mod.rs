@@ -106,7 +106,7 @@ impl Curved {
         }
         let step = self.step(at)?;
         let change = |step: &Vector| self.model.change(step);
-        let better = plain.replaced(at, step, self.weight, Origin::CurvedModel, change)?;
+        let better = plain.replaced(at.set, at.state, step, self.weight, Origin::CurvedModel, change)?;
         Ok(Some(better).filter(|better| better.predicted_decrease > small))
     }
 

@@ -58,7 +58,7 @@ impl PlainCuts {
         };
         let step = &proposal.step * (longest / proposal.step_length);
         let cut_change = self.planes.model(at).cuts().change(&step);
-        match proposal.replaced(at, step, proposal.weight, proposal.origin, |_| cut_change) {
+        match proposal.replaced(at.set, at.state, step, proposal.weight, proposal.origin, |_| cut_change) {
             Ok(shorter) => Proposal { cut_change, ..shorter },
             Err(_) => proposal,
         }
