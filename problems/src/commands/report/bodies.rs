@@ -88,11 +88,6 @@ impl Relief {
         Self { is_height, surface, normals, start }
     }
 
-    /// The relief of positions of the nodes of all bodies, with a caption.
-    pub fn of(&self, caption: &str, positions: &Positions) -> (String, Vec<f64>) {
-        self.captioned(caption, self.outward(positions))
-    }
-
     fn captioned(&self, caption: &str, values: Vec<f64>) -> (String, Vec<f64>) {
         if self.is_height { above_mean(caption, &values) } else { (caption.to_owned(), values) }
     }
@@ -115,11 +110,6 @@ impl Relief {
     /// What the numbers are.
     pub fn quantity(&self) -> &'static str {
         if self.is_height { "height less mean" } else { "outward displacement by the shape" }
-    }
-
-    /// The surface in its plan.
-    pub fn surface(&self) -> &ContactSurface {
-        &self.surface
     }
 }
 
