@@ -1,12 +1,13 @@
 //! From the bodies and contacts of a scene file to a scene.
 
 use crate::bodies::default_subdomains;
+use crate::lookup::body_number;
 use crate::mesh_check::doubts_of_unit;
 use crate::mesh_file::MeshFile;
 use crate::shapes::obstacle;
 use crate::{BlockSection, BodySection, ContactSection, FaceSection, SceneFile, UnitName, loading};
 use contact::error::SceneError;
-use contact::names::{find, find_face};
+use contact::names::find_face;
 use contact::scene::{
     AreaKind, Block, BodyFace, BodyScene, ContactKind, ContactScene, CounterSurface, Geometry, Master, MeshGeometry,
     NormalKind, Scene,
@@ -30,11 +31,6 @@ pub(crate) struct Sources<'a> {
     pub folder: &'a Path,
     /// The mesh that `body.mesh` names, in this unit.
     pub mesh: &'a dyn Fn(&str, UnitName) -> Result<MeshFile, SceneError>,
-}
-
-/// A field that a scene must have here.
-pub(crate) fn required<'f, T>(field: &str, value: Option<&'f T>, allowed: &str) -> Result<&'f T, SceneError> {
-    value.ok_or_else(|| SceneError::out_of_range(field, "missing", allowed))
 }
 
 /// The scene of a file.
@@ -153,46 +149,9 @@ fn contact(
     folder: &Path,
     notes: &mut Vec<String>,
 ) -> Result<ContactScene, SceneError> {
-    let face = |field: &str, section: &FaceSection| {
-        let names = bodies.iter().map(|body| body.name.as_str());
-        let body = match &section.body {
-            Some(name) => find(&format!("{at}.{field}.body"), name, names)?,
-            None if bodies.len() == 1 => 0,
-            None => {
-                let allowed = format!("one of {}", names.collect::<Vec<_>>().join(", "));
-                return Err(SceneError::out_of_range(format!("{at}.{field}.body"), "missing", allowed));
-            }
-        };
-        Ok(BodyFace::new(body, &*section.face))
-    };
     let refused =
         |field: &str, allowed: &str| Err(SceneError::out_of_range(format!("{at}.{field}"), "a value", allowed));
-    let (slave, master) = match (&section.slave, &section.master, &section.faces, &section.obstacle) {
-        (Some(slave), Some(master), None, None) => (face("slave", slave)?, Master::Body(face("master", master)?)),
-        (Some(slave), None, None, Some(section)) => {
-            let slave = face("slave", slave)?;
-            let base = bodies[slave.body].block().map(|block| (block.corner, block.size));
-            (slave, Master::Obstacle(obstacle(&format!("{at}.obstacle"), section, base, folder)?))
-        }
-        (None, None, Some([first, second]), None) => {
-            let both = [face("faces[0]", first)?, face("faces[1]", second)?];
-            let size = |index: usize| facet_size(&format!("{at}.faces[{index}]"), bodies, &both[index]);
-            let sizes = [size(0)?, size(1)?];
-            let [first, second] = both;
-            let (slave, master) = if sizes[1] < sizes[0] { (second, first) } else { (first, second) };
-            notes.push(format!(
-                "{at}: the slave is the face \"{}\" of {}, the softer and finer side",
-                slave.face, bodies[slave.body].name
-            ));
-            (slave, Master::Body(master))
-        }
-        (_, _, Some(_), _) => return refused("faces", "faces alone, without slave, master and obstacle"),
-        (_, Some(_), _, Some(_)) => return refused("obstacle", "a master or an obstacle, not both"),
-        _ => {
-            let allowed = "slave and master, faces, or slave and obstacle";
-            return Err(SceneError::out_of_range(at, "a contact without its sides", allowed));
-        }
-    };
+    let (slave, master) = sides(at, section, bodies, folder, notes)?;
     if section.tied && section.friction.is_some() {
         return refused("friction", "none between glued faces");
     }
@@ -212,6 +171,48 @@ fn contact(
         clearance: section.clearance,
         geometry: section.geometry,
     })
+}
+
+/// Slave and master of a contact.
+fn sides(
+    at: &str,
+    section: &ContactSection,
+    bodies: &[BodyScene],
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<(BodyFace, Master), SceneError> {
+    let face = |field: &str, section: &FaceSection| {
+        let body = body_number(&format!("{at}.{field}.body"), section.body.as_ref(), bodies)?;
+        Ok::<_, SceneError>(BodyFace::new(body, &*section.face))
+    };
+    let refused =
+        |field: &str, allowed: &str| Err(SceneError::out_of_range(format!("{at}.{field}"), "a value", allowed));
+    match (&section.slave, &section.master, &section.faces, &section.obstacle) {
+        (Some(slave), Some(master), None, None) => Ok((face("slave", slave)?, Master::Body(face("master", master)?))),
+        (Some(slave), None, None, Some(section)) => {
+            let slave = face("slave", slave)?;
+            let base = bodies[slave.body].block().map(|block| (block.corner, block.size));
+            Ok((slave, Master::Obstacle(obstacle(&format!("{at}.obstacle"), section, base, folder)?)))
+        }
+        (None, None, Some([first, second]), None) => {
+            let both = [face("faces[0]", first)?, face("faces[1]", second)?];
+            let size = |index: usize| facet_size(&format!("{at}.faces[{index}]"), bodies, &both[index]);
+            let sizes = [size(0)?, size(1)?];
+            let [first, second] = both;
+            let (slave, master) = if sizes[1] < sizes[0] { (second, first) } else { (first, second) };
+            notes.push(format!(
+                "{at}: the slave is the face \"{}\" of {}, the softer and finer side",
+                slave.face, bodies[slave.body].name
+            ));
+            Ok((slave, Master::Body(master)))
+        }
+        (_, _, Some(_), _) => refused("faces", "faces alone, without slave, master and obstacle"),
+        (_, Some(_), _, Some(_)) => refused("obstacle", "a master or an obstacle, not both"),
+        _ => {
+            let allowed = "slave and master, faces, or slave and obstacle";
+            Err(SceneError::out_of_range(at, "a contact without its sides", allowed))
+        }
+    }
 }
 
 /// Young's modulus times the mean width of the facets of a face, N/mm.

@@ -1,6 +1,6 @@
 //! The lattice of a scene file: heights of a face of a block, and free-form shapes of any region.
 
-use crate::conversion::required;
+use crate::lookup::required;
 use crate::{ObstacleSection, shapes};
 use contact::body::mesh::Mesh;
 use contact::error::SceneError;
@@ -16,9 +16,9 @@ const USUAL_DEGREE: usize = 3;
 /// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
 const MARGIN: f64 = 1e-6;
 
-/// The shape of a body that is optimized. Either the heights of a face of a block (`heights`), control points over its base; or
-/// displacements of control points in a lattice around a region: x = x0 + sum of B-splines times displacements (mm).
-/// Nodes outside the box of the lattice stay where they are.
+/// The shape of a body that is optimized. Either the heights of a face of a block (`heights`), control points over its
+/// base; or displacements of control points in a lattice around a region: x = x0 + sum of B-splines times displacements
+/// (mm). Nodes outside the box of the lattice stay where they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSection {
@@ -29,8 +29,8 @@ pub struct LatticeSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 40)), extend("x-unit" = "1"))]
     pub control_points: Option<Vec<usize>>,
-    /// Degrees of the B-splines along the same coordinates, or one for all, less than the control points; control points
-    /// less one give Bernstein polynomials. Default 3, or as many as the control points allow.
+    /// Degrees of the B-splines along the same coordinates, or one for all, less than the control points; control
+    /// points less one give Bernstein polynomials. Default 3, or as many as the control points allow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0, max = 39)), extend("x-unit" = "1"))]
     pub degrees: Option<Vec<usize>>,

@@ -19,6 +19,7 @@ mod lattice;
 mod limit;
 mod load_case;
 mod loading;
+mod lookup;
 mod mesh_check;
 mod mesh_file;
 mod objective;

@@ -2,9 +2,9 @@
 
 use crate::SceneFile;
 use crate::loading::{self, LoadSection, MaterialSection, SupportSection};
+use crate::lookup::body_number;
 use contact::error::SceneError;
 use contact::load_cases::Over;
-use contact::names::find;
 use contact::scene::{BodyScene, Master, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -106,15 +106,7 @@ impl CaseSection {
         let mut scene = base.clone();
         for (number, section) in self.body.iter().enumerate() {
             let at = format!("case[{index}].body[{number}]");
-            let names = scene.bodies.iter().map(|body| body.name.as_str());
-            let body = match &section.name {
-                Some(name) => find(&format!("{at}.name"), name, names)?,
-                None if scene.bodies.len() == 1 => 0,
-                None => {
-                    let allowed = format!("one of {}", names.collect::<Vec<_>>().join(", "));
-                    return Err(SceneError::out_of_range(format!("{at}.name"), "missing", allowed));
-                }
-            };
+            let body = body_number(&format!("{at}.name"), section.name.as_ref(), &scene.bodies)?;
             section.apply(&at, &mut scene.bodies[body])?;
         }
         if let Some(factor) = self.load_factor {

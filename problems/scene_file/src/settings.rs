@@ -64,10 +64,10 @@ pub struct OptimizerSection {
     /// them, where all controls are heights; then smooth random changes.
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
     pub starts: usize,
-    /// Every start is optimized once, with all controls. Default false: where a lattice asks for attempts, has more than
-    /// 3 control points along an axis, and the objective is one of the pressures, attempts with all controls and from 3
-    /// control points per axis to all, then, from the best of them, a run to the end, which begins at the shape of least
-    /// bending that is as good. Other scenes, and growing meshes, are optimized once anyway.
+    /// Every start is optimized once, with all controls. Default false: where a lattice asks for attempts, has more
+    /// than 3 control points along an axis, and the objective is one of the pressures, attempts with all controls and
+    /// from 3 control points per axis to all, then, from the best of them, a run to the end, which begins at the shape
+    /// of least bending that is as good. Other scenes, and growing meshes, are optimized once anyway.
     pub single: bool,
 }
 

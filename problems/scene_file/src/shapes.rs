@@ -1,8 +1,8 @@
 //! Obstacles of a scene file, and the heights that shapes start from.
 
 use crate::ObstacleSection;
-use crate::conversion::required;
 use crate::grid_file;
+use crate::lookup::required;
 use contact::error::SceneError;
 use contact::scene::CounterSurface;
 use std::path::Path;
