@@ -36,8 +36,8 @@ impl Setting {
     }
 
     /// The field at a path such as `body[0].loads[0].traction`, and its value in TOML. A text that is no value of TOML
-    /// is a string. A list of plain values may also be written as `6x6x3` or `6,12`; a single value stands for all entries
-    /// of a list of fixed length.
+    /// is a string. A list of plain values may also be written as `6x6x3` or `6,12`; a single value stands for all
+    /// entries of a list of fixed length.
     ///
     /// # Errors
     /// [`SceneError::UnknownField`] with the nearest name; [`SceneError::OutOfRange`] with what the schema allows.
