@@ -194,7 +194,7 @@ fn nodes_dragged_along_with_friction_are_refused() {
     scene.bodies[0].supports.push(moved(BlockFace::X1Min, [Some(0.4), None, None]));
     ContactProblem::new(scene.clone()).unwrap();
     let error = ContactProblem::new(scene.with_friction(0.3)).unwrap_err().to_string();
-    assert!(error.starts_with("contact friction") && error.contains("contact node"), "{error}");
+    assert!(error.starts_with("contact[0].friction") && error.contains("contact node"), "{error}");
 }
 
 /// Dragged along waves, a node meets another height: gaps by surface normals follow.

@@ -252,8 +252,8 @@ fn bad_scenes_are_refused_naming_the_field() {
         Err(error) => assert!(error.to_string().contains(text), "{error}"),
         Ok(_) => panic!("{text} was accepted"),
     };
-    refused(small(signorini().unwrap(), 0, 1), "lower.bricks[0]");
-    refused(small(signorini().unwrap(), 6, 4), "lower.subdomains[0]");
+    refused(small(signorini().unwrap(), 0, 1), "lower.block.bricks[0]");
+    refused(small(signorini().unwrap(), 6, 4), "lower.block.subdomains[0]");
     refused(signorini().unwrap().with_friction(-0.1), "friction");
     refused(signorini().unwrap().with_friction(f64::NAN), "friction");
     refused(signorini().unwrap().with_shapes(|heights| heights.control_points = [3, 3, 2]), "degree");
