@@ -9,7 +9,8 @@ SCENES = Path(__file__).resolve().parents[2] / "problems" / "scenes"
 
 
 def optimize():
-    scene = Scene.from_toml(SCENES / "signorini.toml", mesh={"bricks": [8, 8, 8], "subdomains": [2, 2, 2]})
+    block = {"body[0].block.bricks": [8, 8, 8], "body[0].block.subdomains": [2, 2, 2]}
+    scene = Scene.from_toml(SCENES / "signorini.toml", **block)
     result = scene.optimize()
     return scene.evaluate(), scene.evaluate(result.x), result
 

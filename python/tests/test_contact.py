@@ -61,17 +61,17 @@ def test_one_run_is_that_of_the_readme():
     ("name", "fields"),
     [
         # Attempts, a run from the best of them, fairness.
-        ("signorini.toml", {"mesh": SMALL, "optimizer": {"starts": 2}}),
-        ("jack_seat.toml", {"mesh": {"bricks": [4, 4, 4]}, "optimizer": {"max_evaluations": 8}}),
-        ("signorini.toml", {"optimizer": {"continuation": [2, 4], "max_evaluations": 5}}),
-        ("lug_hex8.toml", {"optimizer": {"continuation": ["lug_hex8.msh", "lug_tet10.msh"], "max_evaluations": 3}}),
+        ("signorini.toml", {**SMALL, "optimizer.starts": 2}),
+        ("jack_seat.toml", {**BOTH_SMALL, "optimizer.max_evaluations": 8}),
+        ("signorini.toml", {"optimizer.continuation": [2, 4], "optimizer.max_evaluations": 5}),
+        ("lug_hex8.toml", {"optimizer.continuation": ["lug_hex8.msh", "lug_tet10.msh"], "optimizer.max_evaluations": 3}),
     ],
 )
 def test_optimize_finds_the_controls_of_the_program(contact3d, tmp_path, name, fields):
     scene = contact.Scene.from_toml(SCENES / name, **fields)
     seen = []
     result = scene.optimize(journal=tmp_path, callback=lambda intermediate_result: seen.append(intermediate_result.x))
-    changes = [f"--set={table}.{field}={json.dumps(value)}" for table, own in fields.items() for field, value in own.items()]
+    changes = [f"--set={path}={json.dumps(value)}" for path, value in fields.items()]
     printed = subprocess.run([contact3d, SCENES / name, *changes, "--json"], capture_output=True, check=False)
     assert printed.returncode in (0, 1), printed.stderr
     report = json.loads(printed.stdout)
@@ -93,7 +93,7 @@ def test_a_callback_ends_all_runs():
         if len(told) == 3:
             raise StopIteration
 
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL)
     result = scene.optimize(callback=stop)
     assert result.reason == "stopped" and result.nfev == len(told) == 3 and len(result.runs) == 1
     assert scene.optimize(options={"max_seconds": 1e-6}).reason == "time_limit"
@@ -236,7 +236,7 @@ def theta_there(scene, heights, answers):
 
 
 def test_an_interrupt_ends_a_state(interruptible):
-    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh={"bricks": [16, 16, 16]})
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **{"body[0].block.bricks": [16, 16, 16]})
     whole = scene.evaluate().theta
     interrupt = Interrupt(0.3)
     end = time.perf_counter() + 10
