@@ -35,7 +35,6 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", nonsmooth::VERSION)?;
     module.add_function(wrap_pyfunction!(run::minimize, module)?)?;
     module.add_function(wrap_pyfunction!(taylor::taylor_test, module)?)?;
-    module.add_class::<outcome::RunOutcome>()?;
     module.add_class::<certificate::Certificate>()?;
     module.add("OutsideDomain", module.py().get_type::<errors::OutsideDomain>())?;
     module.add("InfeasibleError", module.py().get_type::<errors::InfeasibleError>())?;

@@ -221,9 +221,9 @@ def test_the_collection_as_in_rust(name):
     finally:
         _minimize._engine = _engine
     outcome = problem.minimize(setups[0])
-    assert same_bits(result.x, outcome.x) and result.reason == outcome.reason and result.penalty == outcome.penalty
-    assert without_times(result.history) == without_times(json.loads(outcome.history))
-    reports = json.loads(outcome.constraints)
+    assert same_bits(result.x, outcome["x"]) and result.reason == outcome["reason"] and result.penalty == outcome["penalty"]
+    assert without_times(result.history) == without_times(json.loads(outcome["history"]))
+    reports = json.loads(outcome["constraints"])
     assert same_bits(result.multipliers[0], [report["multiplier"] for report in reports])
     assert (result.constr[0] == problem(result.x)[2]).all()
     assert (result.jac == problem(result.x)[1]).all()

@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, final
+from typing import Any, TypedDict, final, type_check_only
 
 from numpy import float64, int64
 from numpy.typing import ArrayLike, NDArray
@@ -9,46 +9,27 @@ __version__: str
 class OutsideDomain(Exception): ...
 class InfeasibleError(ValueError): ...
 
-@final
-class RunOutcome:
-    @property
-    def x(self) -> NDArray[float64]: ...
-    @property
-    def value(self) -> float: ...
-    @property
-    def subgradient(self) -> NDArray[float64] | None: ...
-    @property
-    def reason(self) -> str: ...
-    @property
-    def confirmed(self) -> bool: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def advice(self) -> str: ...
-    @property
-    def convex(self) -> bool: ...
-    @property
-    def gap(self) -> float | None: ...
-    @property
-    def runs(self) -> str: ...
-    @property
-    def counts(self) -> str: ...
-    @property
-    def history(self) -> str: ...
-    @property
-    def warnings(self) -> list[str]: ...
-    @property
-    def constraints(self) -> str: ...
-    @property
-    def start_value(self) -> float: ...
-    @property
-    def largest_violation(self) -> float: ...
-    @property
-    def penalty(self) -> float | None: ...
-    @property
-    def seconds(self) -> float: ...
-    @property
-    def certificate(self) -> Certificate | None: ...
+@type_check_only
+class RunOutcome(TypedDict):
+    x: NDArray[float64]
+    value: float
+    subgradient: NDArray[float64] | None
+    reason: str
+    confirmed: bool
+    message: str
+    advice: str
+    convex: bool
+    gap: float | None
+    runs: str
+    counts: str
+    history: str
+    warnings: list[str]
+    constraints: str
+    start_value: float
+    largest_violation: float
+    penalty: float | None
+    seconds: float
+    certificate: Certificate | None
 
 @final
 class Certificate:

@@ -194,40 +194,40 @@ _ONE_OUTPUT = {"function": "max", "exponent": 1.0, "groups": None, "weight": Non
 
 def build(outcome, outer=None, nonlinear=None):
     """The result of a run of the engine."""
-    reports = json.loads(outcome.constraints)
+    reports = json.loads(outcome["constraints"])
     worst = [abs(own["value"]) if own["kind"] == "smooth_equality" else own["value"] for own in reports]
     # Limits of a scene: constraints that are told in `limits`.
     found = {"constr": [], "constr_violation": max(worst + [0.0]), "multipliers": []}
     if nonlinear:
         found = nonlinear.found(reports)
         outer = outer or _ONE_OUTPUT
-    counts = json.loads(outcome.counts)
-    runs = json.loads(outcome.runs)
+    counts = json.loads(outcome["counts"])
+    runs = json.loads(outcome["runs"])
     evaluations = sum(run["nfev"] for run in runs) if runs else counts["evaluations"]
-    reason = outcome.reason
-    history = History(json.loads(outcome.history))
-    advice = _ADVICE | _ADVICE_IF_CONVEX if outcome.convex else _ADVICE
+    reason = outcome["reason"]
+    history = History(json.loads(outcome["history"]))
+    advice = _ADVICE | _ADVICE_IF_CONVEX if outcome["convex"] else _ADVICE
     result = Result(
-        message=f"{outcome.message}; {advice.get(reason, outcome.advice)}",
-        success=outcome.confirmed,
+        message="; ".join([outcome["message"], advice.get(reason, outcome["advice"])]),
+        success=outcome["confirmed"],
         status=STATUS[reason],
         reason=reason,
-        fun=outcome.value,
-        x=outcome.x,
-        jac=outcome.subgradient,
+        fun=outcome["value"],
+        x=outcome["x"],
+        jac=outcome["subgradient"],
         nit=counts["iterations"],
         nfev=evaluations,
         njev=evaluations,
-        gap=outcome.gap,
+        gap=outcome["gap"],
         **found,
-        penalty=outcome.penalty,
-        certificate=outcome.certificate,
+        penalty=outcome["penalty"],
+        certificate=outcome["certificate"],
         history=history,
         counts=counts,
-        largest_violation=outcome.largest_violation,
-        start_value=outcome.start_value,
-        seconds=outcome.seconds,
-        warnings=outcome.warnings,
+        largest_violation=outcome["largest_violation"],
+        start_value=outcome["start_value"],
+        seconds=outcome["seconds"],
+        warnings=outcome["warnings"],
         limits=[
             {"excess": found["value"], "satisfied": found["satisfied"], "multiplier": found["multiplier"]}
             for found in reports
