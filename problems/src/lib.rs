@@ -23,7 +23,7 @@
 //! * `export` writes a shape for other programs.
 //!
 //! `--help` lists the options. Exit status: 0 success, 1 the computation failed or a certificate does not agree, 2 bad
-//! input, 130 interrupted. `toy2d` and `membrane2d` run the small problems.
+//! input, 130 interrupted. `toy2d` runs the toy.
 //!
 //! # Modules
 //!

@@ -7,7 +7,6 @@ use nonsmooth::{
     Vector,
 };
 use problems::membrane::{MembraneControl, MembraneData, MembraneGrid, MembraneState, admissible_loads, example};
-use testset::kit;
 
 fn value(theta: &impl NonsmoothObjective, x: &Vector) -> f64 {
     theta.evaluate(&Request::tight(x)).map(|answer| answer.into_evaluation().value).unwrap()
@@ -172,19 +171,4 @@ fn wrong_controls_and_data_are_refused() {
     assert!(MembraneControl::new(grid(), &none).unwrap_err().to_string().contains("patches"));
     assert!(MembraneGrid::new(1, [0.0, 0.0], 1.0).is_err() && MembraneGrid::new(4, [0.0, 0.0], -1.0).is_err());
     assert!(example(1).is_err());
-}
-
-#[test]
-fn the_binary_writes_its_report_and_pictures() {
-    let binary = env!("CARGO_BIN_EXE_membrane2d");
-    let scratch = kit::scratch();
-    let folder = scratch.path();
-    let report = kit::json(binary, &["--cells", "12", "--json", "--out", kit::text(folder)]);
-    assert!(report["value"].as_f64().is_some_and(|value| value < 1e-3), "{report}");
-    for name in ["displacement", "reaction"] {
-        let svg = std::fs::read_to_string(folder.join(format!("{name}.svg"))).unwrap();
-        assert!(roxmltree::Document::parse(&svg).is_ok(), "{name}");
-        assert_eq!(svg.matches("class=\"largest\"").count(), 2, "{name}: start and optimum");
-    }
-    kit::refused(binary, &["--cells", "1"], &["cells"]);
 }

@@ -7,7 +7,6 @@ fn binary(name: &str) -> Option<&'static str> {
     Some(match name {
         "contact3d" => env!("CARGO_BIN_EXE_contact3d"),
         "hertz3d" => env!("CARGO_BIN_EXE_hertz3d"),
-        "membrane2d" => env!("CARGO_BIN_EXE_membrane2d"),
         "signorini3d" => env!("CARGO_BIN_EXE_signorini3d"),
         "toy2d" => env!("CARGO_BIN_EXE_toy2d"),
         _ => return None,

@@ -168,7 +168,6 @@ fn what_cannot_be_printed_is_never_a_success() {
         ("signorini3d", ["--help"].to_vec()),
         ("toy2d", ["--starts", "1"].to_vec()),
         ("toy2d", ["--version"].to_vec()),
-        ("membrane2d", ["--cells", "8", "--max-evaluations", "5", "--json"].to_vec()),
     ];
     let output = |program: &str, redirection: &str, arguments: &[&str]| {
         // A reader that is to be gone first gets the time for it.
@@ -217,7 +216,7 @@ fn help_has_the_defaults_and_results_name_their_files() {
         assert!(help.contains(default), "{default}: {help}");
     }
     assert!(unbroken(printed(CONTACT, &["--help"])).contains("[default: friction of the scene]"));
-    for name in ["contact3d", "hertz3d", "signorini3d", "toy2d", "membrane2d"] {
+    for name in ["contact3d", "hertz3d", "signorini3d", "toy2d"] {
         assert!(printed(crate::binary(name).unwrap(), &["-V"]).starts_with(&format!("{name} ")), "{name}");
     }
     let scratch = kit::scratch();
