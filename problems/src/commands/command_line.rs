@@ -9,7 +9,6 @@ use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::numbers::number;
 use crate::commands::output::{finish, left, notice};
 use crate::commands::scene_options::help_with_defaults;
-use crate::commands::shell_files::{asked, examples};
 use crate::commands::{compare, evaluate, export, field_list, look, new_scene, optimize, recheck, study, verify};
 use clap::{Arg, value_parser};
 use contact::equilibrium::STAGE_TARGET;
@@ -62,6 +61,25 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
     }
 }
 
+/// Examples at the end of the help. `scene`: what names the scene, with a blank, for a binary that takes any.
+fn examples(binary: &str, scene: &str) -> String {
+    let new = match scene {
+        "" => String::new(),
+        _ => format!("{binary} new part.msh\n      a first scene for a mesh, part.toml\n  "),
+    };
+    format!(
+        "Examples:\n  {new}\
+         {binary} {scene}--out results/run\n      \
+         optimize; report, pictures and data go to results/run\n  \
+         {binary} --resume results/run --max-evaluations 300\n      \
+         go on where that run stopped\n  \
+         {binary} {scene}evaluate --mesh 24 --controls results/run/controls.json\n      \
+         the shape found, on a finer mesh\n  \
+         {binary} {scene}--friction 0 --objective peak-pressure\n      \
+         another problem"
+    )
+}
+
 /// The words of the command line that are Unicode.
 fn words() -> Vec<String> {
     std::env::args_os().skip(1).filter_map(|word| word.into_string().ok()).collect()
@@ -76,9 +94,6 @@ fn run_parsed(
 ) -> ExitCode {
     let_large_writes_fail();
     let parser = parser.name(binary);
-    if let Some(file) = asked(&parser, &words()) {
-        return finish(file, None);
-    }
     let (arguments, scene) = match Arguments::parse_by(parser, std::env::args_os()) {
         Ok(parsed) => parsed,
         Err(error) => return left(&error),

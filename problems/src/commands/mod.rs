@@ -4,8 +4,7 @@
 //! [options]`, for
 //! `contact3d` with a scene file before the command. Exit status: 0 success; 1 the computation failed, its result could
 //! not be printed or written, or a certificate does not agree; 2 bad input; 130 interrupted, with a report. `--json`
-//! prints one JSON object on stdout and nothing else there. `NAME completions SHELL` prints a file
-//! for a shell.
+//! prints one JSON object on stdout and nothing else there.
 
 mod arguments;
 mod body_fields;
@@ -39,7 +38,6 @@ mod scene_difference;
 mod scene_options;
 mod scene_words;
 mod shape_facts;
-mod shell_files;
 mod solved_shape;
 mod study;
 mod vectors;

@@ -1,4 +1,4 @@
-//! What the binaries say to people: help, completions; terminals without colours.
+//! What the binaries say to people: help; terminals without colours.
 
 use testset::kit::{self, command, errors, refused};
 
@@ -35,16 +35,6 @@ fn the_help_fits_the_terminal() {
             assert!(indent + longest > 40 || line.trim_start().starts_with('-'), "{line:?}");
         }
     }
-}
-
-#[test]
-fn shells_get_their_completions() {
-    for (shell, words) in [("bash", "complete -F"), ("zsh", "#compdef hertz3d"), ("fish", "complete -c hertz3d")] {
-        let script = printed(HERTZ, &["completions", shell]);
-        assert!(script.contains(words) && script.contains("max-evaluations"), "{shell}: {script}");
-    }
-    refused(HERTZ, &["completions", "cmd"], &["name of a shell", "bash", "zsh"]);
-    refused(CONTACT, &["completions"], &["name of a shell"]);
 }
 
 #[test]
