@@ -1,6 +1,6 @@
 //! Error of the contact solvers against tolerance and seconds, with the estimate reported beside the true error.
 
-use crate::accuracy::objective::{EXPONENT, norm, objective, perturbed};
+use crate::accuracy::objective::{objective, perturbed};
 use crate::markdown::{seconds, section};
 use crate::scaling::{SceneName, Variant, option_name};
 use nonsmooth::{Accuracy, Evaluation, StateSolver, Vector};
@@ -61,7 +61,7 @@ pub struct AlgebraStudy {
 impl AlgebraStudy {
     /// Runs all solvers.
     pub fn new(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Self, Failure> {
-        let by = |variant| objective(variant, scene, bricks, norm(EXPONENT));
+        let by = |variant| objective(variant, scene, bricks);
         let reference = by(Variant::Direct)?;
         let control = perturbed(&reference);
         let states = reference.cases().solve(&control, None, Accuracy::TIGHTEST)?;

@@ -17,21 +17,12 @@ pub fn case(mesh: usize) -> Case {
     Case { mesh, subdomains: default_subdomains(mesh) }
 }
 
-/// The measure Σσ^p.
-pub fn norm(exponent: f64) -> PressureMeasure {
-    PressureMeasure::Norm { exponent, weight: NodeWeight::Nodes }
-}
-
-/// A measure of a scene with N bricks per edge by a solver.
+/// Σσ⁴ of a scene with N bricks per edge by a solver.
 ///
 /// # Errors
 /// [`Failure`] from the scene or the preparation of the solver.
-pub fn objective(
-    variant: Variant,
-    scene: SceneName,
-    mesh: usize,
-    measure: PressureMeasure,
-) -> Result<ContactObjective, Failure> {
+pub fn objective(variant: Variant, scene: SceneName, mesh: usize) -> Result<ContactObjective, Failure> {
+    let measure = PressureMeasure::Norm { exponent: EXPONENT, weight: NodeWeight::Nodes };
     let problem = Arc::new(ContactProblem::new(scene.scene(case(mesh))?)?);
     let solver = variant.solver(&problem, 1).map_err(Failure::computation)?;
     Ok(ContactObjective::new(ContactShape::by(solver), Measure::Pressure(measure), &[])?)
@@ -39,7 +30,7 @@ pub fn objective(
 
 /// Σσ⁴ by the default solver, descent on total FETI.
 pub fn objective_of(scene: SceneName, mesh: usize) -> Result<ContactObjective, Failure> {
-    objective(Variant::Dirichlet, scene, mesh, norm(EXPONENT))
+    objective(Variant::Dirichlet, scene, mesh)
 }
 
 /// Controls of the start, each lowered at random by 1 to 3 %, so that the shape has no symmetry.

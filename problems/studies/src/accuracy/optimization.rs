@@ -1,13 +1,11 @@
-//! Θ(best) − Θ* against evaluations and products: always tight, accuracy on demand, coarse to fine; pressure norms
-//! against the true peak pressure.
+//! Θ(best) − Θ* against evaluations and products: always tight, accuracy on demand, coarse to fine.
 //!
 //! Work is counted in products with the dual operator of the finest mesh: one on a coarser mesh counts as its share of
 //! dofs. It leaves out factorisations, one set per evaluation.
 
-use crate::accuracy::objective::{case, norm, objective, objective_of};
+use crate::accuracy::objective::{case, objective_of};
 use crate::markdown::{or_dash, seconds, section};
-use crate::scaling::{SceneName, Variant, option_name};
-use contact::cost::PressureMeasure;
+use crate::scaling::{SceneName, option_name};
 use nonsmooth::{AccuracyPolicy, BundleTrust, BundleTrustConfig, VariableScaling, Vector};
 use problems::commands::{ContactObjective, Failure, SolvedShape};
 use serde::Serialize;
@@ -38,19 +36,6 @@ pub struct Course {
     value: f64,
 }
 
-/// One measure of pressure as the objective.
-#[derive(Debug, Serialize)]
-struct PeakRow {
-    /// Name of the measure that is minimised.
-    measure: String,
-    evaluations: usize,
-    seconds: f64,
-    /// Peak pressure at the end, MPa.
-    peak: f64,
-    /// Σσ⁴ at the end.
-    norm: f64,
-}
-
 /// All courses on one scene.
 #[derive(Debug, Serialize)]
 pub struct OptimizationStudy {
@@ -63,10 +48,6 @@ pub struct OptimizationStudy {
     pub lowest: f64,
     /// Course of each strategy.
     pub courses: Vec<Course>,
-    /// Mesh of the measures of pressure.
-    peak_mesh: usize,
-    /// Measures of pressure; the first row is the start.
-    peaks: Vec<PeakRow>,
 }
 
 /// Relative distances from Θ* whose price is reported.
@@ -95,14 +76,12 @@ impl OptimizationStudy {
         }
         courses.push(coarse_to_fine(scene, levels, &objective, evaluations)?);
         let lowest = courses.iter().map(|course| course.value).fold(f64::INFINITY, f64::min);
-        let peak_mesh = levels[1.min(levels.len() - 1)];
-        let peaks = peaks(scene, peak_mesh, evaluations)?;
-        Ok(Self { scene, fine, start, lowest, courses, peak_mesh, peaks })
+        Ok(Self { scene, fine, start, lowest, courses })
     }
 
-    /// The tables of strategies and measures.
+    /// The table of strategies.
     pub fn markdown(&self) -> String {
-        let Self { fine, start, lowest, peak_mesh, .. } = self;
+        let Self { fine, start, lowest, .. } = self;
         let courses = self.courses.iter().map(|course| {
             let evaluations = format!("{} + {}", course.points.len(), course.coarse_evaluations);
             let mut cells = vec![course.strategy.to_owned(), evaluations, seconds(course.seconds)];
@@ -113,21 +92,11 @@ impl OptimizationStudy {
             cells.push(format!("{:.5e}", course.value));
             cells
         });
-        let peaks = self.peaks.iter().map(|row| {
-            let mut cells = vec![row.measure.clone(), row.evaluations.to_string(), seconds(row.seconds)];
-            cells.extend([format!("{:.1}", row.peak), format!("{:.5e}", row.norm)]);
-            cells
-        });
         let targets = TARGETS.map(|target| format!("to {:.0} %: evaluations, products", 100.0 * target));
         let head = format!("strategy | evaluations fine + coarse | seconds | {} | Θ at the end", targets.join(" | "));
         let scene = option_name(&self.scene);
         section(&format!("{scene}, {fine}³ bricks: distance from the minimum"), &head, courses)
             + &format!("\nΘ at the start {start:.5e}; Θ* = {lowest:.5e} is the lowest of these runs.\n")
-            + &section(
-                &format!("{scene}, {peak_mesh}³ bricks: norms of the pressure against its peak"),
-                "minimised | evaluations | seconds | peak pressure, MPa | Σσ⁴",
-                peaks,
-            )
     }
 }
 
@@ -194,21 +163,4 @@ fn minimize(
     });
     let points = points.collect();
     Ok(StrategyRun { controls: report.solution, points, seconds: clock.elapsed().as_secs_f64() })
-}
-
-/// Norms of several exponents and the peak pressure itself, each with the same number of evaluations.
-fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
-    let reference = objective_of(scene, mesh)?;
-    let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
-        let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&reference, controls)?;
-        Ok(PeakRow { measure, evaluations, seconds, peak, norm })
-    };
-    let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), norm(exponent)));
-    let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &reference.solver().start())?];
-    for (name, measure) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
-        let objective = objective(Variant::Dirichlet, scene, mesh, measure)?;
-        let run = minimize(&objective, objective.solver().start(), AccuracyPolicy::Tightest, evaluations)?;
-        rows.push(row(name, run.points.len(), run.seconds, &run.controls)?);
-    }
-    Ok(rows)
 }
