@@ -22,6 +22,7 @@ mod kinks;
 mod linear_rows;
 mod linear_scaling;
 mod many_variables;
+mod outer_functions;
 mod parts;
 mod penalty;
 mod plateau;
