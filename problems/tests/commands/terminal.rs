@@ -1,6 +1,6 @@
 //! What the binaries say to people: help; terminals without colours.
 
-use testset::kit::{self, command, errors, refused};
+use testset::kit::{self, command, errors};
 
 const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
 const HERTZ: &str = env!("CARGO_BIN_EXE_hertz3d");
