@@ -174,16 +174,17 @@ def test_keyboard_interrupt_in_a_function_without_bytecode(collection, interrupt
 
 
 def test_keyboard_interrupt_in_a_long_subproblem(interruptible):
+    # Large enough that the first subproblem takes many times the delay of the signal on any machine.
     rng = np.random.default_rng(1)
-    matrix, right = rng.normal(size=(1200, 120)), rng.normal(size=1200)
+    matrix, right = rng.normal(size=(3000, 400)), rng.normal(size=3000)
     interrupts = []
 
     def residuals(x):
-        interrupts.append(Interrupt(0.2) if not interrupts else None)
+        interrupts.append(Interrupt(0.1) if not interrupts else None)
         return matrix @ x - right, matrix
 
     with pytest.raises(KeyboardInterrupt) as caught:
-        nonsmooth.minimize_composite("max", residuals, np.ones(120), options={"max_seconds": 30.0})
+        nonsmooth.minimize_composite("max", residuals, np.ones(400), options={"max_seconds": 60.0})
     assert interrupts[0].age() < 0.5
     assert caught.value.best.nfev == len(interrupts) == 1
 
