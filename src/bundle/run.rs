@@ -137,7 +137,7 @@ impl Run<'_, '_> {
                     self.tell(|proposer, at| proposer.recenter(at, known.as_ref()));
                     StepKind::Serious
                 } else {
-                    self.state.reject_constraints(false);
+                    self.state.reject_constraints();
                     StepKind::Null
                 };
                 let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
@@ -297,6 +297,7 @@ impl Run<'_, '_> {
         }
         let trial = Trial::new(&self.state, proposal, &evaluation, accurate, known.as_ref());
         self.tell(|proposer, at| proposer.learn(at, &trial));
+        self.learn_restoring(&trial);
         self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, !accurate);
         let kind = if trial.serious {
             self.state.move_center(accuracy);
@@ -304,7 +305,7 @@ impl Run<'_, '_> {
             StepKind::Serious
         } else if accurate {
             self.state.remember_lowest();
-            self.state.reject_constraints(working_forces(self.working.as_ref(), proposal));
+            self.state.reject_constraints();
             StepKind::Null
         } else {
             StepKind::NoDescent
@@ -312,6 +313,22 @@ impl Run<'_, '_> {
         self.tell(|proposer, at| proposer.update(at, &trial));
         let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
         record(&mut self.state, proposal, accuracy, event, self.clock);
+    }
+
+    /// Learns how far the linearizations of violated constraints hold, from a step whose length they determined.
+    fn learn_restoring(&mut self, trial: &Trial<'_>) {
+        let (Some((_, working)), Some(constraints)) = (&self.working, &mut self.state.constraints) else { return };
+        let Some(found) = trial.constraints.filter(|_| trial.accurate && working.restoring()) else { return };
+        let length = trial.proposal.step_length;
+        if !working.forces(length) {
+            return;
+        }
+        if trial.serious {
+            let drop = constraints.center_violation() - constraints.violation(&found.values);
+            constraints.restoring.accept(working.restoring_weight, drop / working.reduction);
+        } else {
+            constraints.restoring.reject(working.restoring_weight, length);
+        }
     }
 
     /// Takes the first subgradient of the objective that is not 0 as the unit of weights and penalty, where that of the
@@ -426,11 +443,6 @@ impl Run<'_, '_> {
 /// Entry i of a direction without pattern.
 pub(super) fn without_pattern(i: usize) -> f64 {
     (1.7 * i as f64 + 0.5).cos()
-}
-
-/// Whether the violation of the constraints, rather than the objective, determines the length of a step.
-fn working_forces(working: Option<&((u64, u64), Rc<WorkingSet>)>, proposal: &Proposal) -> bool {
-    working.is_some_and(|(_, working)| working.forces(proposal.step_length))
 }
 
 /// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another

@@ -221,9 +221,9 @@ impl BundleState {
     }
 
     /// Keeps the linearizations of the constraints at a point that has not become the center.
-    pub(crate) fn reject_constraints(&mut self, forced: bool) {
+    pub(crate) fn reject_constraints(&mut self) {
         if let Some(constraints) = &mut self.constraints {
-            constraints.reject(forced, &self.norm);
+            constraints.reject(&self.norm);
         }
     }
 

@@ -55,3 +55,15 @@ fn a_shape_says_by_how_much_it_exceeds_its_limit() {
     assert!((peak - 13019.175283).abs() < 1e-5 && limit["violation"].as_f64() == Some(peak - 3400.0), "{limit}");
     assert_eq!(limited(14000.0, &["evaluate"])["limits"][0]["violation"], 0.0);
 }
+
+/// Peak limits that are active at the optimum, and one that only the start exceeds.
+#[test]
+fn shapes_within_peak_limits_are_proved() {
+    for (limit, active) in [(3455.3, true), (3702.2, false)] {
+        let result = limited(limit, &["optimize", "--single"]);
+        let found = &result["limits"][0];
+        assert_eq!(result["termination"]["confirmed"], true, "{}", result["termination"]);
+        assert_eq!((&found["satisfied"], &found["active"]), (&true.into(), &active.into()), "{found}");
+        assert!(result["evaluations"].as_u64().unwrap() <= 35, "{}", result["evaluations"]);
+    }
+}

@@ -75,11 +75,12 @@ impl Seen<'_> {
 }
 
 impl Kinks {
-    /// Learns from a step of the model itself that promised a decrease; it pays if it brings half of the largest
-    /// decrease promised since a step last paid. Returns whether the model should fall silent because of kinks.
-    pub(super) fn met(&mut self, seen: &Seen<'_>, promised: f64, serious: bool) -> bool {
+    /// Learns from a step of the model itself that promised a decrease and has brought one, if it was serious: of the
+    /// merit, where there are constraints. It pays if it brings half of the largest decrease promised since a step last
+    /// paid. Returns whether the model should fall silent because of kinks.
+    pub(super) fn met(&mut self, seen: &Seen<'_>, promised: f64, brought: Option<f64>) -> bool {
         let promised = promised.max(self.promised);
-        if serious && -seen.change >= 0.5 * promised {
+        if brought.is_some_and(|decrease| decrease >= 0.5 * promised) {
             *self = Self { paid: self.paid + 1, ..Self::default() };
             return false;
         }

@@ -65,7 +65,8 @@ impl Composite {
     /// center's.
     ///
     /// A step along a curved kink of h leaves the kink by second order in its length, and loses by first order in this
-    /// distance (Maratos effect): the model at the end of the step leads back to the kink.
+    /// distance (Maratos effect): the model at the end of the step leads back to the kink. The same holds along curved
+    /// constraints, whose linearizations at the end of the step lead back.
     fn correction(
         &mut self,
         at: &mut Position<'_>,
@@ -74,9 +75,16 @@ impl Composite {
     ) -> Result<Option<Proposal>, Termination> {
         let origin = &base.point - &rejected.point;
         let changes = Changes { set: None, origin: Some(&origin) };
-        let Some((proposal, _)) = self.steps.step(at, rejected, self.trust.weight / 10.0, changes)? else {
-            return Ok(None);
+        let weight = self.trust.weight / 10.0;
+        let constraints = at.state.constraints.as_deref();
+        let curved = at.outer.is_some_and(|outer| are_curved(outer, constraints));
+        let known = at.working.zip(constraints).filter(|_| curved);
+        let there = known.and_then(|(working, known)| working.at_rejected(&at.own_set(), known, &rejected.point));
+        let found = match &there {
+            Some(working) => self.steps.step(&mut at.within(working), rejected, weight, changes)?,
+            None => self.steps.step(at, rejected, weight, changes)?,
         };
+        let Some((proposal, _)) = found else { return Ok(None) };
         let length = at.state.norm.length(&(&proposal.trial - &rejected.point));
         let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
         let worthwhile = at.restoring() || predicted_decrease > at.resolution().small();
@@ -102,7 +110,11 @@ impl Composite {
             };
             let promised = proposal.predicted_decrease;
             if at.restoring() {
-                return Ok(Answer::trial(proposal));
+                if at.working.is_none_or(|working| working.trusts(proposal.step_length)) {
+                    return Ok(Answer::trial(proposal));
+                }
+                weight *= 10.0;
+                continue;
             }
             if promised > small {
                 if proposal.step_length <= self.trust.longest {
@@ -260,7 +272,7 @@ impl Composite {
             if self.kinks.remain(&seen) {
                 self.trust.prolong();
             }
-        } else if self.kinks.met(&seen, proposal.predicted_decrease, trial.serious) {
+        } else if self.kinks.met(&seen, proposal.predicted_decrease, trial.serious.then_some(-comparison.change)) {
             self.trust.pause();
         }
     }

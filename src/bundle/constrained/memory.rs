@@ -1,5 +1,6 @@
 //! What a run has seen of its nonlinear constraints.
 
+use super::restoring::RestoringTrust;
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
 use crate::report::ConstraintReport;
@@ -56,12 +57,14 @@ pub(crate) struct Constraints {
     pub penalty: f64,
     /// v where ρ was last lowered. Half of it lets ρ fall again, so that it cannot rise and fall for ever.
     lowered_at: f64,
-    /// How much more the length of a step counts in the relaxation, after steps that did not reduce the violation.
-    pub caution: f64,
+    /// How far steps are trusted that reduce the violation.
+    pub restoring: RestoringTrust,
     /// ‖g‖* of the objective at the start.
     pub objective_slope: f64,
     center: Known,
     newest: Option<Known>,
+    /// The last trial point, if it has not become the center.
+    rejected: Option<Known>,
     /// The center before.
     former: Option<Known>,
     /// Linearizations at other points, the oldest first.
@@ -120,10 +123,11 @@ impl Constraints {
             penalty: slope,
             lowered_at: f64::INFINITY,
             sensitivity: 0.0,
-            caution: 1.0,
+            restoring: RestoringTrust::default(),
             objective_slope: slope,
             center,
             newest: None,
+            rejected: None,
             former: None,
             others: vec![],
             last_step: 0.0,
@@ -170,6 +174,7 @@ impl Constraints {
     /// The newest point becomes the center.
     pub(crate) fn move_center(&mut self, norm: &ScaledNorm) {
         let Some(newest) = self.newest.take() else { return };
+        self.rejected = None;
         self.last_step = norm.length(&(&*newest.point - &*self.center.point));
         let old = std::mem::replace(&mut self.center, newest);
         self.measure();
@@ -179,7 +184,6 @@ impl Constraints {
                 *unit = length;
             }
         }
-        self.caution = (0.1 * self.caution).max(1.0);
         let violation = self.center_violation();
         if self.penalty > MAX_PENALTY_SHARE * self.sensitivity && violation <= 0.5 * self.lowered_at {
             self.penalty = (0.1 * self.penalty).max(2.0 * self.sensitivity);
@@ -194,11 +198,9 @@ impl Constraints {
     }
 
     /// The newest point is no center: its linearizations are kept.
-    pub(crate) fn reject(&mut self, forced: bool, norm: &ScaledNorm) {
-        if forced {
-            self.caution *= 10.0;
-        }
+    pub(crate) fn reject(&mut self, norm: &ScaledNorm) {
         let Some(newest) = self.newest.take() else { return };
+        self.rejected = Some(newest.clone());
         self.keep(newest);
         self.prune(norm);
         self.revision += 1;
@@ -263,6 +265,12 @@ impl Constraints {
     /// The linearizations at the center, and at other points.
     pub(crate) fn tangents(&self) -> (&[Tangent], &[Tangent]) {
         (&self.center.tangents, &self.others)
+    }
+
+    /// The linearizations at a point, if it is the last trial point and has not become the center.
+    pub(crate) fn rejected_tangents(&self, point: &Vector) -> Option<&[Tangent]> {
+        let known = self.rejected.as_ref().filter(|known| *known.point == *point)?;
+        Some(&known.tangents)
     }
 
     /// The largest |c_j| at the centers.
@@ -367,10 +375,11 @@ impl Constraints {
         self.visited.iter().map(merit).fold(center, f64::max) - center
     }
 
-    /// The Jacobian of the constraints at a point, if it is the center or the newest point.
+    /// The Jacobian of the constraints at a point, if it is the center or the last trial point.
     pub(crate) fn jacobian_at(&self, point: &Vector) -> Option<&Matrix> {
         let at = |known: &&Known| *known.point == *point;
-        Some(&std::iter::once(&self.center).chain(&self.newest).find(at)?.evaluation.jacobian)
+        let mut known = std::iter::once(&self.center).chain(&self.newest).chain(&self.rejected);
+        Some(&known.find(at)?.evaluation.jacobian)
     }
 
     /// Whether constraints with multipliers μ_j are degenerate: their gradients all but cancel each other, or vanish at

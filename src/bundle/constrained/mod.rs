@@ -12,6 +12,7 @@
 //! References: \[Kiwiel1990\] for cuts, \[ByrdNocedalWaltz2008\] for the relaxation and the choice of ρ.
 
 mod memory;
+mod restoring;
 mod tangent;
 mod working_set;
 

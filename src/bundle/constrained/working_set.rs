@@ -1,6 +1,7 @@
 //! The admissible set with the linearized constraints, relaxed so far that it is not empty.
 
 use super::memory::Constraints;
+use super::restoring::RestoringTrust;
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
 use crate::bundle::proposers::subproblem::{self, Cuts};
@@ -12,8 +13,10 @@ use std::rc::Rc;
 /// Weight κ of the relaxation, times the violation: the linearized violation falls as long as it does so by a hundredth
 /// of the length.
 const WEIGHT: f64 = 1e-2;
-/// Tenfold decreases of κ before the violation counts as stationary.
-const MAX_DECREASES: usize = 8;
+/// Tenfold decreases of κ, and increases, for one step.
+const MAX_CHANGES: usize = 8;
+/// A weight that lets the linearized violation fall by less than this share is too large.
+const LEAST_SHARE: f64 = 0.01;
 /// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
 const MAX_RELATIVE_SLOPE: f64 = 1e5;
 /// Share of the reduction by which the rows are relaxed beyond what is possible.
@@ -38,6 +41,10 @@ pub(crate) struct WorkingSet {
     pub reduction: f64,
     /// Length of the step that the relaxation takes.
     pub forced_length: f64,
+    /// The weight κ of this step.
+    pub restoring_weight: f64,
+    /// Largest length of a step from a center that violates the constraints.
+    longest: f64,
     /// Whether the center satisfies the constraints to their tolerance.
     pub feasible: bool,
     /// Whether no direction reduces the violation.
@@ -63,6 +70,11 @@ impl WorkingSet {
         step_length <= 2.0 * self.forced_length
     }
 
+    /// Whether a step from a center that violates the constraints is short enough.
+    pub(crate) fn trusts(&self, step_length: f64) -> bool {
+        step_length <= self.longest.max(2.0 * self.forced_length)
+    }
+
     /// The set without the linearizations that are not wanted.
     pub(crate) fn filtered(&self, keep: impl Fn(&Tangent) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.tangents.len()).filter(|&i| keep(&self.tangents[i])).collect();
@@ -73,6 +85,28 @@ impl WorkingSet {
             kinds: self.kinds.clone(),
             ..*self
         }
+    }
+
+    /// The set with the linearizations at a trial point that has not become the center: a step from there may leave as
+    /// much violation as the step to it was to leave. None where that point is not known.
+    pub(crate) fn at_rejected(&self, own: &Polyhedron, constraints: &Constraints, point: &Vector) -> Option<Self> {
+        let left = (constraints.center_violation() - self.reduction).max(0.0);
+        let unit = |t: &Tangent| self.units[t.constraint];
+        let tangents = constraints.rejected_tangents(point)?.iter();
+        let tangents: Vec<Tangent> = tangents.filter(|t| unit(t) > 0.0 && t.slope.amax() > 0.0).cloned().collect();
+        let rows = Matrix::from_fn(tangents.len(), point.len(), |i, k| tangents[i].slope[k] / unit(&tangents[i]));
+        let at_point = &rows * point;
+        let level = Vector::from_fn(tangents.len(), |i, _| at_point[i] - tangents[i].value / unit(&tangents[i]));
+        let two_sided = |i: usize| self.kinds[tangents[i].constraint] == ConstraintKind::SmoothEquality;
+        let lower =
+            Vector::from_fn(tangents.len(), |i, _| if two_sided(i) { level[i] - left } else { f64::NEG_INFINITY });
+        Some(Self {
+            set: own.clone().with_tangents(&rows, &lower, &level.add_scalar(left)),
+            tangents: Rc::new(tangents),
+            units: self.units.clone(),
+            kinds: self.kinds.clone(),
+            ..*self
+        })
     }
 
     /// Whether the next step has to reduce the violation.
@@ -91,19 +125,19 @@ impl WorkingSet {
     ) -> Self {
         let mut seen = seen_from(constraints, center, norm);
         let (violation, excess) = (constraints.center_violation(), constraints.center_excess());
-        let (mut relaxation, mut stationary, mut forced_length) = (violation, false, 0.0);
+        let mut restoring = Restoring { left: violation, stationary: false, length: 0.0, weight: 0.0 };
         let costly = constraints.sensitivity * violation > negligible;
         if excess > 1e-3 || costly {
-            let size = (violation, constraints.caution, reach);
-            (relaxation, stationary, forced_length) = relax(set, (&seen, size), center, norm, solver);
-            if stationary && seen.iter().any(|seen| !seen.holds) {
+            let size = (violation, constraints.restoring, reach);
+            restoring = relax(set, &seen, size, center, norm, solver);
+            if restoring.stationary && seen.iter().any(|seen| !seen.holds) {
                 // Linearizations at other points prove nothing where a constraint is not convex.
                 seen.retain(|seen| seen.holds);
-                (relaxation, stationary, forced_length) = relax(set, (&seen, size), center, norm, solver);
+                restoring = relax(set, &seen, size, center, norm, solver);
             }
         }
         // The rows keep a common point in the rounding of the subproblem.
-        relaxation += ROOM * (violation - relaxation);
+        let relaxation = restoring.left + ROOM * (violation - restoring.left);
         let seen: Vec<Seen<'_>> = seen.into_iter().filter(|seen| seen.slope.amax() > 0.0).collect();
         let rows = Matrix::from_fn(seen.len(), center.len(), |i, k| seen[i].slope[k]);
         let at_center = &rows * center;
@@ -119,10 +153,12 @@ impl WorkingSet {
             tangents: Rc::new(seen.iter().map(|seen| (*seen.tangent).clone()).collect()),
             units: (0..constraints.kinds().len()).map(|j| constraints.unit(j)).collect(),
             kinds: constraints.kinds().to_vec(),
-            forced_length,
+            forced_length: restoring.length,
+            restoring_weight: restoring.weight,
+            longest: constraints.restoring.longest,
             reduction: (violation - relaxation).max(0.0),
             feasible: excess <= 1.0 && !costly,
-            stationary: stationary && excess > 1.0,
+            stationary: restoring.stationary && excess > 1.0,
             convex: !constraints.nonconvex().contains(&true)
                 && !constraints.kinds().contains(&ConstraintKind::SmoothEquality),
         }
@@ -182,14 +218,28 @@ fn curvatures(constraints: &Constraints, center: &Vector, norm: &ScaledNorm) -> 
     curvatures
 }
 
-/// The violation s that a step may leave, and whether the violation is stationary.
+/// A step that reduces the linearized violation.
+#[derive(Debug, Clone, Copy)]
+struct Restoring {
+    /// The violation s that it leaves.
+    left: f64,
+    /// Whether the violation is stationary.
+    stationary: bool,
+    /// Its length.
+    length: f64,
+    /// κ.
+    weight: f64,
+}
+
+/// The step that reduces the violation: min over d of max_i (level_i + ⟨h_i, d⟩) + κ‖d‖²/2, within the set.
 fn relax(
     set: &Polyhedron,
-    (seen, (violation, caution, reach)): (&[Seen<'_>], (f64, f64, f64)),
+    seen: &[Seen<'_>],
+    (violation, trust, reach): (f64, RestoringTrust, f64),
     center: &Vector,
     norm: &ScaledNorm,
     solver: &mut EpigraphQpSolver,
-) -> (f64, bool, f64) {
+) -> Restoring {
     let mut slopes = vec![Vector::zeros(center.len())];
     let mut offsets = vec![violation];
     for seen in seen {
@@ -204,31 +254,40 @@ fn relax(
     let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
     let steepest = slopes.iter().zip(&offsets).filter(|(_, offset)| **offset <= 0.5 * violation);
     let slope = steepest.map(|(slope, _)| norm.dual_length(slope)).fold(0.0, f64::max);
-    let mut weight = WEIGHT * caution * if slope > 0.0 { slope * slope } else { 1.0 } / violation;
+    let first_weight = WEIGHT * if slope > 0.0 { slope * slope } else { 1.0 } / violation;
+    let mut weight = trust.weight.unwrap_or(first_weight);
+    let mut best = Restoring { left: violation, stationary: false, length: 0.0, weight };
     let mut first = true;
-    let mut best = (violation, false, 0.0);
-    for _ in 0..=MAX_DECREASES {
+    for _ in 0..2 * MAX_CHANGES {
         let metric = norm.weighted(weight);
-        let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else {
-            return (violation, false, 0.0);
-        };
+        let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else { return best };
+        let length = norm.length(&solution.step);
         // The linearized violation falls by no more than this within reach.
-        let aggregate = weight * norm.length(&solution.step);
         let error: f64 = offsets.iter().zip(&solution.cut_multipliers).map(|(a, m)| m * a).sum();
-        if error + aggregate * reach <= STATIONARY * violation {
-            return (best.0, true, best.2);
+        if error + weight * length * reach <= STATIONARY * violation {
+            return Restoring { stationary: true, ..best };
+        }
+        if length > trust.longest {
+            if best.left < violation {
+                return best;
+            }
+            weight *= 10.0;
+            continue;
         }
         let level = |seen: &Seen<'_>| {
             let level = seen.level + seen.slope.dot(&solution.step);
             if seen.two_sided { level.abs() } else { level }
         };
         let left = seen.iter().map(level).fold(0.0, f64::max).min(violation);
-        let gained = best.0 - left;
+        let gained = best.left - left;
         if gained > 0.0 {
-            best = (left, false, norm.length(&solution.step));
+            best = Restoring { left, stationary: false, length, weight };
         }
-        // The relaxation is small enough, or no longer step reduces it much.
-        if best.0 <= 0.1 * violation || caution > 1.0 || !first && best.0 < 0.99 * violation && gained <= 0.1 * best.0 {
+        // The relaxation is small enough, or no longer step reduces it much. Once a step has failed, its weight says
+        // how far the linearizations hold.
+        let falls = best.left < (1.0 - LEAST_SHARE) * violation;
+        let enough = best.left <= 0.1 * violation || trust.weight.is_some() && falls;
+        if enough || !first && falls && gained <= 0.1 * best.left {
             return best;
         }
         first = false;
