@@ -297,7 +297,10 @@ impl Run<'_, '_> {
         }
         let trial = Trial::new(&self.state, proposal, &evaluation, accurate, known.as_ref());
         self.tell(|proposer, at| proposer.learn(at, &trial));
-        self.learn_restoring(&trial);
+        let violated = self.working.as_ref().zip(self.state.constraints.as_deref_mut());
+        if let (Some(((_, working), constraints)), Some(found)) = (violated, trial.constraints.filter(|_| accurate)) {
+            working.learn(constraints, proposal.step_length, trial.serious, &found.values);
+        }
         self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, !accurate);
         let kind = if trial.serious {
             self.state.move_center(accuracy);
@@ -313,22 +316,6 @@ impl Run<'_, '_> {
         self.tell(|proposer, at| proposer.update(at, &trial));
         let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
         record(&mut self.state, proposal, accuracy, event, self.clock);
-    }
-
-    /// Learns how far the linearizations of violated constraints hold, from a step whose length they determined.
-    fn learn_restoring(&mut self, trial: &Trial<'_>) {
-        let (Some((_, working)), Some(constraints)) = (&self.working, &mut self.state.constraints) else { return };
-        let Some(found) = trial.constraints.filter(|_| trial.accurate && working.restoring()) else { return };
-        let length = trial.proposal.step_length;
-        if !working.forces(length) {
-            return;
-        }
-        if trial.serious {
-            let drop = constraints.center_violation() - constraints.violation(&found.values);
-            constraints.restoring.accept(working.restoring_weight, drop / working.reduction);
-        } else {
-            constraints.restoring.reject(working.restoring_weight, length);
-        }
     }
 
     /// Takes the first subgradient of the objective that is not 0 as the unit of weights and penalty, where that of the

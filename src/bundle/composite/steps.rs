@@ -136,7 +136,8 @@ fn stacked(outputs: &Matrix, constraints: Option<&Matrix>) -> Matrix {
 /// Whether Jacobians at other points tell the curvature of some constraints: of smooth ones, and of functions of the
 /// outputs.
 pub(super) fn are_curved(outer: &dyn OuterFunction, constraints: Option<&Constraints>) -> bool {
-    constraints.is_some_and(|found| found.has_smooth() || !outer.constraint_kinds().is_empty())
+    let is_smooth = |kind: &ConstraintKind| *kind != ConstraintKind::Nonsmooth;
+    constraints.is_some_and(|found| found.kinds().iter().any(is_smooth) || !outer.constraint_kinds().is_empty())
 }
 
 /// The weights of the outputs above the multipliers of the constraints, in the units of the constraints. A piece of a

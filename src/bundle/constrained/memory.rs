@@ -247,11 +247,6 @@ impl Constraints {
         self.revision
     }
 
-    /// Whether some constraints are smooth: their Jacobians at other points tell their curvature.
-    pub(crate) fn has_smooth(&self) -> bool {
-        self.kinds.iter().any(|kind| *kind != ConstraintKind::Nonsmooth)
-    }
-
     /// The kinds of the constraints.
     pub(crate) fn kinds(&self) -> &[ConstraintKind] {
         &self.kinds

@@ -42,7 +42,7 @@ pub(crate) struct WorkingSet {
     /// Length of the step that the relaxation takes.
     pub forced_length: f64,
     /// The weight κ of this step.
-    pub restoring_weight: f64,
+    restoring_weight: f64,
     /// Largest length of a step from a center that violates the constraints.
     longest: f64,
     /// Whether the center satisfies the constraints to their tolerance.
@@ -68,6 +68,20 @@ impl WorkingSet {
     /// Whether the violation, rather than the objective, determines a step of this length.
     pub(crate) fn forces(&self, step_length: f64) -> bool {
         step_length <= 2.0 * self.forced_length
+    }
+
+    /// Learns how far the linearizations of violated constraints hold, from the values at the end of a step whose
+    /// length they determined.
+    pub(crate) fn learn(&self, constraints: &mut Constraints, length: f64, serious: bool, values: &Vector) {
+        if !(self.restoring() && self.forces(length)) {
+            return;
+        }
+        if serious {
+            let drop = constraints.center_violation() - constraints.violation(values);
+            constraints.restoring.accept(self.restoring_weight, drop / self.reduction);
+        } else {
+            constraints.restoring.reject(self.restoring_weight, length);
+        }
     }
 
     /// Whether a step from a center that violates the constraints is short enough.
@@ -231,16 +245,9 @@ struct Restoring {
     weight: f64,
 }
 
-/// The step that reduces the violation: min over d of max_i (level_i + ⟨h_i, d⟩) + κ‖d‖²/2, within the set.
-fn relax(
-    set: &Polyhedron,
-    seen: &[Seen<'_>],
-    (violation, trust, reach): (f64, RestoringTrust, f64),
-    center: &Vector,
-    norm: &ScaledNorm,
-    solver: &mut EpigraphQpSolver,
-) -> Restoring {
-    let mut slopes = vec![Vector::zeros(center.len())];
+/// The violation as the largest of linear functions: their slopes, and how far they lie below it at the center.
+fn below(violation: f64, seen: &[Seen<'_>], dimension: usize) -> (Vec<Vector>, Vec<f64>) {
+    let mut slopes = vec![Vector::zeros(dimension)];
     let mut offsets = vec![violation];
     for seen in seen {
         slopes.push(seen.slope.clone());
@@ -250,6 +257,19 @@ fn relax(
             offsets.push(violation + seen.level);
         }
     }
+    (slopes, offsets)
+}
+
+/// The step that reduces the violation: min over d of max_i (level_i + ⟨h_i, d⟩) + κ‖d‖²/2, within the set.
+fn relax(
+    set: &Polyhedron,
+    seen: &[Seen<'_>],
+    (violation, trust, reach): (f64, RestoringTrust, f64),
+    center: &Vector,
+    norm: &ScaledNorm,
+    solver: &mut EpigraphQpSolver,
+) -> Restoring {
+    let (slopes, offsets) = below(violation, seen, center.len());
     let ids: Vec<u64> = (0..slopes.len() as u64).collect();
     let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
     let steepest = slopes.iter().zip(&offsets).filter(|(_, offset)| **offset <= 0.5 * violation);
