@@ -216,7 +216,7 @@ def test_the_collection_as_in_rust(name):
     try:
         result = nonsmooth.minimize(
             problem, problem.start, bounds=np.transpose(problem.bounds), constraint_kinds=problem.kinds,
-            options={"max_evaluations": 300},
+            options={"max_evaluations": 500},
         )
     finally:
         _minimize._engine = _engine
