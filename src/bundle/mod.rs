@@ -36,6 +36,7 @@ mod scales;
 mod seen;
 mod start;
 mod state;
+mod step_trust;
 mod trial;
 mod verdict;
 

@@ -76,5 +76,5 @@ fn limits_of_stresses_do_as_well_as_their_penalty() {
     let share = (share / f64::from(count)).exp();
     let found = format!("{as_low} as low, {confirmed} confirmed of {count}, evaluations {share:.2}");
     println!("{found} of those with the penalty");
-    assert!(as_low >= 50 && confirmed >= 46 && share < 0.85, "{found}");
+    assert!(as_low >= 50 && confirmed >= 46 && share < 0.95, "{found}");
 }

@@ -41,7 +41,7 @@ impl Escape {
         let Some(set) = inactive.and_then(|inactive| closing_set(at, center, inactive)) else {
             return (None, Answer::end(ending));
         };
-        let weight = Trust::new(at.state.first_weight).weight;
+        let weight = Trust::new(at.state.first_weight).next.weight;
         // A fault of h beyond the constraints takes nothing from the proof.
         let Ok(Some((proposal, _))) = steps.step(at, center, weight, Changes { set: Some(&set), origin: None }) else {
             return (None, Answer::end(ending));

@@ -75,7 +75,7 @@ impl Composite {
     ) -> Result<Option<Proposal>, Termination> {
         let origin = &base.point - &rejected.point;
         let changes = Changes { set: None, origin: Some(&origin) };
-        let weight = self.trust.weight / 10.0;
+        let weight = self.trust.next.weight / 10.0;
         let constraints = at.state.constraints.as_deref();
         let curved = at.outer.is_some_and(|outer| are_curved(outer, constraints));
         let known = at.working.zip(constraints).filter(|_| curved);
@@ -98,7 +98,7 @@ impl Composite {
     /// is neither.
     fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
         let small = at.resolution().small();
-        let mut weight = self.trust.weight.max(LEAST_WEIGHT);
+        let mut weight = self.trust.next.weight.max(LEAST_WEIGHT);
         let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
@@ -110,14 +110,14 @@ impl Composite {
             };
             let promised = proposal.predicted_decrease;
             if at.restoring() {
-                if at.working.is_none_or(|working| working.trusts(proposal.step_length)) {
+                if at.trusts_restoring(proposal.step_length) {
                     return Ok(Answer::trial(proposal));
                 }
                 weight *= 10.0;
                 continue;
             }
             if promised > small {
-                if proposal.step_length <= self.trust.longest {
+                if proposal.step_length <= self.trust.next.longest {
                     return Ok(Answer::trial(proposal));
                 }
                 (weight, raised) = (weight * 10.0, true);
@@ -174,7 +174,7 @@ impl Composite {
     /// A step that promises little: the model may prove the point at its end stationary. Silent within a limit of
     /// length, where a longer step has been rejected: the cuts go on.
     fn small_step(&mut self, at: &Position<'_>, proposal: Proposal) -> Answer {
-        if self.trust.longest < f64::INFINITY {
+        if self.trust.next.longest < f64::INFINITY {
             self.trust.pause();
             Answer::Silent
         } else if proposal.predicted_decrease > at.state.rounding() {
@@ -322,7 +322,7 @@ impl Proposer for Composite {
     fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
         if let Some(mut escape) = self.escape.take() {
             if trial.serious {
-                self.trust.weight = escape.weight;
+                self.trust.next.weight = escape.weight;
             } else {
                 escape.learn(trial.value, base_at(trial));
                 self.escape = Some(escape);

@@ -2,26 +2,23 @@
 
 use crate::bundle::proposers::pause::Pause;
 use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::step_trust::StepTrust;
 
 /// The first weight, relative to the first weight of the cuts: h is exact, so that first steps ten times as long as
 /// those of the cuts pay.
 const FIRST_WEIGHT: f64 = 1e-2;
-/// Largest length of the step after a rejected one, in lengths of the rejected step.
-const SHORTER: f64 = 0.3;
+
 /// Weight and limits of the next step.
 #[derive(Debug)]
 pub(super) struct Trust {
-    pub weight: f64,
-    /// Length that the next step must not exceed, after a rejected one.
-    pub longest: f64,
+    pub next: StepTrust,
     failures: usize,
     pause: Pause,
 }
 
 impl Trust {
     pub(super) fn new(first_weight: f64) -> Self {
-        let weight = FIRST_WEIGHT * first_weight;
-        Self { weight, longest: f64::INFINITY, failures: 0, pause: Pause::default() }
+        Self { next: StepTrust::new(FIRST_WEIGHT * first_weight), failures: 0, pause: Pause::default() }
     }
 
     /// Whether no pause is left. Counts one evaluation of the pause.
@@ -40,16 +37,14 @@ impl Trust {
 
     /// A step has been accepted that brought `ratio` times the predicted decrease: half of it lets the weight fall.
     pub(super) fn accept(&mut self, proposal: &Proposal, ratio: f64) {
-        self.weight = if ratio >= 0.5 && !proposal.restores { proposal.weight / 10.0 } else { proposal.weight };
-        self.longest = f64::INFINITY;
+        self.next = StepTrust::accepted(proposal.weight, ratio >= 0.5 && !proposal.restores);
         self.failures = 0;
         self.pause.succeed();
     }
 
     /// A step has been rejected, or the oracle has failed at its end.
     pub(super) fn reject(&mut self, proposal: &Proposal) {
-        self.weight = 10.0 * proposal.weight;
-        self.longest = SHORTER * proposal.step_length;
+        self.next = StepTrust::rejected(proposal.weight, proposal.step_length);
         self.failures += 1;
         if self.failures > 2 {
             self.pause();

@@ -1,8 +1,8 @@
 //! What a run has seen of its nonlinear constraints.
 
-use super::restoring::RestoringTrust;
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
+use crate::bundle::step_trust::StepTrust;
 use crate::report::ConstraintReport;
 use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Vector};
 use std::rc::Rc;
@@ -57,8 +57,8 @@ pub(crate) struct Constraints {
     pub penalty: f64,
     /// v where ρ was last lowered. Half of it lets ρ fall again, so that it cannot rise and fall for ever.
     lowered_at: f64,
-    /// How far steps are trusted that reduce the violation.
-    pub restoring: RestoringTrust,
+    /// How far steps are trusted that reduce the violation; none as long as none has failed.
+    pub restoring: Option<StepTrust>,
     /// ‖g‖* of the objective at the start.
     pub objective_slope: f64,
     center: Known,
@@ -123,7 +123,7 @@ impl Constraints {
             penalty: slope,
             lowered_at: f64::INFINITY,
             sensitivity: 0.0,
-            restoring: RestoringTrust::default(),
+            restoring: None,
             objective_slope: slope,
             center,
             newest: None,
@@ -190,8 +190,8 @@ impl Constraints {
             self.lowered_at = violation;
         }
         if self.last_step > 0.0 {
-            self.former = Some(old.clone());
-            self.keep(old);
+            self.keep(&old);
+            self.former = Some(old);
         }
         self.prune(norm);
         self.revision += 1;
@@ -200,21 +200,21 @@ impl Constraints {
     /// The newest point is no center: its linearizations are kept.
     pub(crate) fn reject(&mut self, norm: &ScaledNorm) {
         let Some(newest) = self.newest.take() else { return };
-        self.rejected = Some(newest.clone());
-        self.keep(newest);
+        self.keep(&newest);
+        self.rejected = Some(newest);
         self.prune(norm);
         self.revision += 1;
     }
 
     /// Keeps the linearizations of inequalities at a point other than the center.
-    fn keep(&mut self, other: Known) {
+    fn keep(&mut self, other: &Known) {
         // Further pieces are worth their rows at the center only.
-        let kept = other.tangents.into_iter().take(self.kinds.len()).filter(|t| match self.kinds[t.constraint] {
+        let kept = other.tangents.iter().take(self.kinds.len()).filter(|t| match self.kinds[t.constraint] {
             ConstraintKind::Nonsmooth => true,
             ConstraintKind::Smooth => t.value > 0.0,
             ConstraintKind::SmoothEquality => false,
         });
-        self.others.extend(kept);
+        self.others.extend(kept.cloned());
     }
 
     /// Drops linearizations: of smooth nonconvex constraints those away from the center, then the oldest.

@@ -12,7 +12,6 @@
 //! References: \[Kiwiel1990\] for cuts, \[ByrdNocedalWaltz2008\] for the relaxation and the choice of ρ.
 
 mod memory;
-mod restoring;
 mod tangent;
 mod working_set;
 

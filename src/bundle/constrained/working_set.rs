@@ -1,10 +1,10 @@
 //! The admissible set with the linearized constraints, relaxed so far that it is not empty.
 
 use super::memory::Constraints;
-use super::restoring::RestoringTrust;
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
 use crate::bundle::proposers::subproblem::{self, Cuts};
+use crate::bundle::step_trust::StepTrust;
 use crate::qp::EpigraphQpSolver;
 use crate::{ConstraintKind, Matrix, Polyhedron, Vector};
 use std::borrow::Cow;
@@ -13,8 +13,8 @@ use std::rc::Rc;
 /// Weight κ of the relaxation, times the violation: the linearized violation falls as long as it does so by a hundredth
 /// of the length.
 const WEIGHT: f64 = 1e-2;
-/// Tenfold decreases of κ, and increases, for one step.
-const MAX_CHANGES: usize = 8;
+/// Weights κ tried for one step.
+const MAX_WEIGHTS: usize = 16;
 /// A weight that lets the linearized violation fall by less than this share is too large.
 const LEAST_SHARE: f64 = 0.01;
 /// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
@@ -43,8 +43,6 @@ pub(crate) struct WorkingSet {
     pub forced_length: f64,
     /// The weight κ of this step.
     restoring_weight: f64,
-    /// Largest length of a step from a center that violates the constraints.
-    longest: f64,
     /// Whether the center satisfies the constraints to their tolerance.
     pub feasible: bool,
     /// Whether no direction reduces the violation.
@@ -78,15 +76,12 @@ impl WorkingSet {
         }
         if serious {
             let drop = constraints.center_violation() - constraints.violation(values);
-            constraints.restoring.accept(self.restoring_weight, drop / self.reduction);
+            let good = drop >= 0.5 * self.reduction;
+            let next = |_| StepTrust::accepted(self.restoring_weight, good);
+            constraints.restoring = constraints.restoring.map(next);
         } else {
-            constraints.restoring.reject(self.restoring_weight, length);
+            constraints.restoring = Some(StepTrust::rejected(self.restoring_weight, length));
         }
-    }
-
-    /// Whether a step from a center that violates the constraints is short enough.
-    pub(crate) fn trusts(&self, step_length: f64) -> bool {
-        step_length <= self.longest.max(2.0 * self.forced_length)
     }
 
     /// The set without the linearizations that are not wanted.
@@ -142,12 +137,11 @@ impl WorkingSet {
         let mut restoring = Restoring { left: violation, stationary: false, length: 0.0, weight: 0.0 };
         let costly = constraints.sensitivity * violation > negligible;
         if excess > 1e-3 || costly {
-            let size = (violation, constraints.restoring, reach);
-            restoring = relax(set, &seen, size, center, norm, solver);
+            restoring = relax(set, constraints, &seen, reach, center, norm, solver);
             if restoring.stationary && seen.iter().any(|seen| !seen.holds) {
                 // Linearizations at other points prove nothing where a constraint is not convex.
                 seen.retain(|seen| seen.holds);
-                restoring = relax(set, &seen, size, center, norm, solver);
+                restoring = relax(set, constraints, &seen, reach, center, norm, solver);
             }
         }
         // The rows keep a common point in the rounding of the subproblem.
@@ -169,7 +163,6 @@ impl WorkingSet {
             kinds: constraints.kinds().to_vec(),
             forced_length: restoring.length,
             restoring_weight: restoring.weight,
-            longest: constraints.restoring.longest,
             reduction: (violation - relaxation).max(0.0),
             feasible: excess <= 1.0 && !costly,
             stationary: restoring.stationary && excess > 1.0,
@@ -263,22 +256,25 @@ fn below(violation: f64, seen: &[Seen<'_>], dimension: usize) -> (Vec<Vector>, V
 /// The step that reduces the violation: min over d of max_i (level_i + ⟨h_i, d⟩) + κ‖d‖²/2, within the set.
 fn relax(
     set: &Polyhedron,
+    constraints: &Constraints,
     seen: &[Seen<'_>],
-    (violation, trust, reach): (f64, RestoringTrust, f64),
+    reach: f64,
     center: &Vector,
     norm: &ScaledNorm,
     solver: &mut EpigraphQpSolver,
 ) -> Restoring {
+    let (violation, trust) = (constraints.center_violation(), constraints.restoring);
+    let longest = trust.map_or(f64::INFINITY, |trust| trust.longest);
     let (slopes, offsets) = below(violation, seen, center.len());
     let ids: Vec<u64> = (0..slopes.len() as u64).collect();
     let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
     let steepest = slopes.iter().zip(&offsets).filter(|(_, offset)| **offset <= 0.5 * violation);
     let slope = steepest.map(|(slope, _)| norm.dual_length(slope)).fold(0.0, f64::max);
     let first_weight = WEIGHT * if slope > 0.0 { slope * slope } else { 1.0 } / violation;
-    let mut weight = trust.weight.unwrap_or(first_weight);
+    let mut weight = trust.map_or(first_weight, |trust| trust.weight);
     let mut best = Restoring { left: violation, stationary: false, length: 0.0, weight };
     let mut first = true;
-    for _ in 0..2 * MAX_CHANGES {
+    for _ in 0..MAX_WEIGHTS {
         let metric = norm.weighted(weight);
         let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else { return best };
         let length = norm.length(&solution.step);
@@ -287,7 +283,7 @@ fn relax(
         if error + weight * length * reach <= STATIONARY * violation {
             return Restoring { stationary: true, ..best };
         }
-        if length > trust.longest {
+        if length > longest {
             if best.left < violation {
                 return best;
             }
@@ -306,7 +302,7 @@ fn relax(
         // The relaxation is small enough, or no longer step reduces it much. Once a step has failed, its weight says
         // how far the linearizations hold.
         let falls = best.left < (1.0 - LEAST_SHARE) * violation;
-        let enough = best.left <= 0.1 * violation || trust.weight.is_some() && falls;
+        let enough = best.left <= 0.1 * violation || trust.is_some() && falls;
         if enough || !first && falls && gained <= 0.1 * best.left {
             return best;
         }

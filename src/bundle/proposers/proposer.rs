@@ -83,6 +83,15 @@ impl Position<'_> {
         self.config.convexity == Convexity::Convex && self.working.is_none_or(|working| working.convex)
     }
 
+    /// Whether a step from a center that violates nonlinear constraints is short enough: as short as its predecessors
+    /// have taught, or as the step that reduces the violation.
+    pub(crate) fn trusts_restoring(&self, step_length: f64) -> bool {
+        let known = self.working.zip(self.state.constraints.as_deref());
+        known.is_none_or(|(working, known)| {
+            step_length <= known.restoring.map_or(f64::INFINITY, |trust| trust.longest).max(2.0 * working.forced_length)
+        })
+    }
+
     /// Whether the center violates nonlinear constraints.
     pub(crate) fn restoring(&self) -> bool {
         self.working.is_some_and(WorkingSet::restoring)
