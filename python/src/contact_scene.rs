@@ -223,6 +223,7 @@ impl ContactScene {
         result.set_item("error_bound", evaluation.error_bound)?;
         set_cases(&result, objective, &states, &checked)?;
         set_limits(&result, objective, &controls, &states)?;
+        set_reports(&result, objective, &controls, &states)?;
         Ok(result)
     }
 
@@ -314,6 +315,26 @@ fn set_limits(
         limits.append(own)?;
     }
     result.set_item("limits", limits)
+}
+
+/// Adds the quantities that the scene reports.
+fn set_reports(
+    result: &Bound<'_, PyDict>,
+    objective: &ContactObjective,
+    controls: &Vector,
+    states: &CaseStates,
+) -> PyResult<()> {
+    let reports = PyList::empty(result.py());
+    for (report, value) in objective.reported(controls, states) {
+        let own = PyDict::new(result.py());
+        own.set_item("quantity", report.quantity.name())?;
+        own.set_item("label", report.label.clone())?;
+        own.set_item("case", report.case.clone())?;
+        own.set_item("unit", raised(&report.quantity.unit()))?;
+        own.set_item("value", value)?;
+        reports.append(own)?;
+    }
+    result.set_item("reports", reports)
 }
 
 impl ContactScene {

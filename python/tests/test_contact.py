@@ -102,9 +102,9 @@ def test_a_callback_ends_all_runs():
 @pytest.mark.parametrize(
     ("objective", "unit"),
     [
-        ({"measure": "compliance"}, "N mm"),
-        ({"measure": "stress-norm"}, "MPa"),
-        ({"measure": "pressure-deviation", "wanted": {"form": "formula", "pressure": "3000"}}, "MPa²"),
+        ({"quantity": "compliance"}, "N mm"),
+        ({"quantity": "stress-norm"}, "MPa"),
+        ({"quantity": "pressure-deviation", "wanted": {"form": "formula", "pressure": "3000"}}, "MPa²"),
     ],
 )
 def test_other_objectives_have_derivatives_and_optima(objective, unit):
@@ -137,8 +137,21 @@ def test_a_scene_weighs_nodes_by_their_area_unless_it_says_nodes(signorini):
     assert abs((cells * np.maximum(second.pressures, 0) ** 4).sum() / second.theta - 1) < 1e-12
     assert abs(first.theta**0.25 / first.norm_in_mpa - 1) < 1e-12
     assert abs((second.theta / 1e4) ** 0.25 / second.norm_in_mpa - 1) < 1e-12
-    with pytest.raises(ValueError, match="objective.weight = nodes.*pressure norm"):
-        contact.Scene.from_toml(SCENES / "signorini.toml", objective={"measure": "compliance", "weight": "nodes"})
+    with pytest.raises(ValueError, match="objective.weight = nodes.*pressure-norm"):
+        contact.Scene.from_toml(SCENES / "signorini.toml", objective={"quantity": "compliance", "weight": "nodes"})
+
+
+def test_reports_have_labels_cases_and_units():
+    reports = [
+        {"quantity": "contact-force", "axis": "x3"},
+        {"quantity": "reaction", "region": {"face": "x1-min"}, "label": "left support"},
+    ]
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", **SMALL, report=reports)
+    state = scene.evaluate()
+    force, support = state.reports
+    assert (force["quantity"], force["label"], force["case"], force["unit"]) == ("contact-force", None, None, "N")
+    assert abs(force["value"] / -state.total_force - 1) < 1e-9
+    assert support["label"] == "left support" and np.isfinite(support["value"])
 
 
 def codes(found):

@@ -3,9 +3,9 @@
 use crate::body::mesh::smallest_extent;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
-use crate::cost::{ContactAreas, Limit, LimitedQuantity, Measure, PressureCost};
+use crate::cost::{Limit, PressureCost, Quantity, Reported};
 use crate::error::SceneError;
-use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCases, Over, WeightedCase};
+use crate::load_cases::{Bound, CaseCost, CaseStates, CasesCost, LoadCase, LoadCases, Over, Told, WeightedCase};
 use crate::scene::Scene;
 use crate::shape::LatticeShape;
 use nonsmooth::ConstraintPiece;
@@ -28,45 +28,52 @@ pub struct ContactObjective {
     composed: CompositeObjective<LoadCases, CasesCost>,
     /// The limits in the order of the constraints of the optimizer: those that are functions of the outputs first.
     bounds: Vec<Bound>,
+    /// What is told beside them.
+    told: Vec<Told>,
     kinds: Vec<ConstraintKind>,
 }
 
 impl ContactObjective {
-    /// A measure of the states of one map, with limits beside it.
+    /// A quantity of the states of one map, with limits beside it.
     ///
     /// # Errors
     /// As [`of_cases`](Self::of_cases).
-    pub fn new(shape: ContactShape, measure: Measure, limits: &[Limit]) -> Result<Self, SceneError> {
-        let case = LoadCase { name: String::new(), weight: 1.0, shape, measure };
-        Self::of_cases(vec![case], Over::Worst, limits)
+    pub fn new(shape: ContactShape, quantity: Quantity, limits: &[Limit]) -> Result<Self, SceneError> {
+        let case = LoadCase { name: String::new(), weight: 1.0, shape, quantity };
+        Self::of_cases(vec![case], Over::Worst, limits, &[])
     }
 
-    /// Some load cases of one shape, at least one, rated together. A limit of no case holds in each of them.
+    /// Some load cases of one shape, at least one, rated together. A limit of no case holds in each of them, and a report
+    /// of no case is told in each.
     ///
     /// # Errors
     /// As [`CasesCost::new`]; [`SceneError::OutOfRange`] for a limit of an unknown case, a bound that means nothing,
     /// and cases whose controls differ in number.
-    pub fn of_cases(cases: Vec<LoadCase>, over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
-        let weighted = |case: &LoadCase| (case.weight, case.measure.clone());
-        let plain: Vec<(f64, Measure)> = cases.iter().map(weighted).collect();
-        let parts = plain.into_iter().zip(&cases).map(|((weight, measure), case)| WeightedCase {
+    pub fn of_cases(
+        cases: Vec<LoadCase>,
+        over: Over,
+        limits: &[Limit],
+        reports: &[Reported],
+    ) -> Result<Self, SceneError> {
+        let parts = cases.iter().map(|case| WeightedCase {
             name: &case.name,
-            weight,
-            measure,
+            weight: case.weight,
+            quantity: case.quantity.clone(),
             problem: case.shape.problem(),
         });
         let parts: Vec<WeightedCase<'_>> = parts.collect();
         let cost = CasesCost::new(&parts, over, limits)?;
         let named: Vec<_> = parts.iter().map(|part| (part.name, part.problem)).collect();
-        let bounds = Bound::all(limits, &named)?;
+        let (bounds, told) = (Bound::all(limits, &named)?, Told::all(reports, &named)?);
         let kinds = bounds.iter().map(Bound::kind).collect();
         let fields = |case: usize| {
             let own = bounds.iter().filter(|bound| bound.case == case).map(Bound::fields);
-            own.fold([false; 2], |[any, kinks], [field, kink]| [any || field, kinks || kink])
+            let told = told.iter().any(|told| told.case == case && told.needs_displacements());
+            own.fold([told, false], |[any, kinks], [field, kink]| [any || field, kinks || kink])
         };
         let fields: Vec<[bool; 2]> = (0..cases.len()).map(fields).collect();
         let map = LoadCases::new(cases, &cost, &fields);
-        Ok(Self { composed: CompositeObjective::new(map, cost), bounds, kinds })
+        Ok(Self { composed: CompositeObjective::new(map, cost), bounds, told, kinds })
     }
 
     /// The limits with their cases, in the order of the constraints of the optimizer.
@@ -78,6 +85,13 @@ impl ContactObjective {
     pub fn limited_values(&self, control: &Vector, states: &CaseStates) -> Vec<f64> {
         let problem = |case: usize| self.cases().case(case).problem();
         self.bounds.iter().map(|bound| bound.value(problem(bound.case), control, &states[bound.case])).collect()
+    }
+
+    /// The reports with their cases and the values of their quantities at states already found.
+    pub fn reported(&self, control: &Vector, states: &CaseStates) -> Vec<(&Reported, f64)> {
+        let problem = |case: usize| self.cases().case(case).problem();
+        let value = |told: &'_ Told| told.value(problem(told.case), control, &states[told.case]);
+        self.told.iter().map(|told| (&told.report, value(told))).collect()
     }
 
     /// Adds the constraints that are no functions of the outputs to those of an evaluation.
@@ -127,7 +141,7 @@ impl ContactObjective {
     fn pressure(&self, case: usize) -> Option<&PressureCost> {
         match self.cost().case(case) {
             CaseCost::Pressure(cost) => Some(cost),
-            CaseCost::Field(_) | CaseCost::Volume => None,
+            CaseCost::State(_) | CaseCost::Shape(_) => None,
         }
     }
 
@@ -224,8 +238,7 @@ impl ContactObjective {
     pub fn unit(&self) -> String {
         match self.cost().case(0) {
             CaseCost::Pressure(cost) => cost.unit(),
-            CaseCost::Field(cost) => cost.unit().into(),
-            CaseCost::Volume => LimitedQuantity::Volume.unit().into(),
+            CaseCost::State(_) | CaseCost::Shape(_) => self.cost().quantity().unit(),
         }
     }
 
@@ -251,11 +264,6 @@ impl ContactObjective {
     /// As [`PressureCost::norm_in_mpa`], under the conditions of [`pressure_root`](Self::pressure_root).
     pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
         self.pressure_root(value).map(|root| root.value)
-    }
-
-    /// The contact areas of a state of a case, where the open area is what is minimised.
-    pub fn contact_areas(&self, case: usize, state: &ContactState) -> Option<ContactAreas> {
-        self.pressure(case)?.contact_areas(state)
     }
 
     /// Half of the mean distance between a surface and its counterpart in the first case, the length on which contact

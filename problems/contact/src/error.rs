@@ -100,7 +100,7 @@ impl SceneError {
     }
 
     /// Refuses a field that is not `valid`.
-    pub(crate) fn require(
+    pub fn require(
         valid: bool,
         field: impl Into<String>,
         value: impl ToString,

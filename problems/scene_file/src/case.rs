@@ -5,15 +5,16 @@ use crate::conversion::{Parts, Sources, scene_of};
 use crate::limit::limits;
 use crate::load_case::{CaseScene, cases};
 use crate::mesh_file;
-use crate::region::check_body;
-use crate::{AccuracyName, MethodName, Objective, OptimizerSection, OutputSection, SceneFile};
+use crate::quantity::{Details, Lookup};
+use crate::report::reports;
+use crate::{AccuracyName, MethodName, OptimizerSection, OutputSection, SceneFile};
 use contact::communication::InProcess;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
-use contact::cost::{Limit, Measure};
+use contact::cost::{Limit, PressureMeasure, Quantity, Reported};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
-use contact::load_cases::{Bound, CasesCost, LoadCase, Over, WeightedCase};
+use contact::load_cases::{Bound, CasesCost, LoadCase, Over, Told, WeightedCase};
 use contact::memory;
 use contact::names::find;
 use contact::scene::{Block, Scene};
@@ -35,13 +36,15 @@ pub struct Case {
     /// Controls at the start, mm, where they are not those of the scene.
     pub start: Option<Vec<f64>>,
     /// What is minimised.
-    pub objective: Objective,
+    pub objective: Quantity,
     /// The load cases, at least one; all that differ.
     pub cases: Vec<CaseScene>,
     /// How they are rated together.
     pub over: Over,
     /// The limits of what the shape leads to.
     pub limits: Vec<Limit>,
+    /// What is told beside objective and limits.
+    pub reports: Vec<Reported>,
     /// What proposes trial points.
     pub method: MethodName,
     /// The contact solver.
@@ -91,18 +94,21 @@ impl Case {
         let files =
             file.optimizer.continuation.iter().enumerate().filter_map(|(index, mesh)| Some((index, mesh.file()?)));
         let meshes = files.map(|mesh| on_mesh((file, folder), mesh, &scene)).collect::<Result<_, _>>()?;
-        check_body("objective.region", file.objective.region.as_ref(), &scene)?;
-        for (index, limit) in file.limit.iter().enumerate() {
-            check_body(&format!("limit[{index}].region"), limit.region.as_ref(), &scene)?;
+        for (place, details) in stated(file) {
+            details.check_bodies(&|name: &str| format!("{place}.{name}"), &scene)?;
         }
-        let objective = Objective::new(&file.objective, base(&scene), folder)?;
-        if let (Objective::Deviation(wanted), Some((block, heights))) = (&objective, scene.shaped_block()) {
-            let height = heights.start;
-            wanted.at(&block.grid().places().map(|[x1, x2]| [x1, x2, height]).collect::<Vec<_>>())?;
-        }
+        let lookup = Lookup { base: base(&scene), folder };
+        let field = |name: &str| format!("objective.{name}");
+        let objective = file.objective.details.quantity(file.objective.quantity, (&field, false), &lookup)?;
+        objective.check_differentiable("objective.quantity")?;
+        check_wanted(&objective, &scene)?;
         let cases = cases(file, &scene)?;
-        let limits = limits(&file.limit, &file.case.iter().map(|case| case.name.trim()).collect::<Vec<_>>())?;
-        let limits = limits.into_iter().map(|limit| of_first_equal(limit, &cases)).collect::<Vec<_>>();
+        let names: Vec<&str> = file.case.iter().map(|case| case.name.trim()).collect();
+        let of_first = |case: Option<String>| first_equal(case, &cases);
+        let limits = limits(&file.limit, &names, &lookup)?.into_iter();
+        let limits: Vec<Limit> = limits.map(|limit| Limit { case: of_first(limit.case), ..limit }).collect();
+        let reports = reports(&file.report, &names, &lookup)?.into_iter();
+        let reports = reports.map(|report| Reported { case: of_first(report.case), ..report }).collect();
         let tolerance = file.optimizer.tolerance.unwrap_or_else(|| usual_tolerance(&limits));
         let method = method(&objective, file.optimizer.method, cases.len() > 1 || !limits.is_empty())?;
         check_accuracy(&objective, file.optimizer.accuracy)?;
@@ -113,6 +119,7 @@ impl Case {
             cases,
             over: file.objective.over,
             limits,
+            reports,
             method,
             solver: file.solver.kind,
             preconditioner: file.solver.preconditioner,
@@ -130,14 +137,6 @@ impl Case {
         self.start.clone().unwrap_or_else(|| self.scene.start())
     }
 
-    /// What is minimised, on the mesh of a problem.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] for a formula that is not finite at a contact node, with the place.
-    pub fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
-        self.objective.measure(problem)
-    }
-
     /// How every load case is to be solved.
     pub fn plans(&self, wanted: Wanted) -> impl Iterator<Item = SolverPlan> {
         let Self { preconditioner, clusters, solver: kind, .. } = *self;
@@ -149,15 +148,15 @@ impl Case {
     /// Θ over all load cases, with solvers that are prepared in some processes.
     ///
     /// # Errors
-    /// As [`Processes::solver`], [`Case::measure`] and [`ContactObjective::of_cases`].
+    /// As [`Processes::solver`] and [`ContactObjective::of_cases`].
     pub fn prepared(&self, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, SceneError> {
         let case = |(case, plan): (&CaseScene, SolverPlan)| {
             let shape = ContactShape::by(processes.solver(plan)?);
-            let measure = self.measure(shape.problem())?;
-            Ok(LoadCase { name: case.name.clone(), weight: case.weight, shape, measure })
+            let quantity = self.objective.clone();
+            Ok(LoadCase { name: case.name.clone(), weight: case.weight, shape, quantity })
         };
         let cases = self.cases.iter().zip(self.plans(wanted)).map(case).collect::<Result<_, SceneError>>()?;
-        ContactObjective::of_cases(cases, self.over, &self.limits)
+        ContactObjective::of_cases(cases, self.over, &self.limits, &self.reports)
     }
 
     /// What an optimization asks of the contact solver.
@@ -183,18 +182,19 @@ impl Case {
     /// Θ over all load cases as a function of their outputs, with their limits and problems; no solver is prepared.
     ///
     /// # Errors
-    /// As [`ContactProblem::new`], [`Case::measure`] and [`CasesCost::new`].
+    /// As [`ContactProblem::new`] and [`CasesCost::new`].
     pub fn cost(&self) -> Result<(CasesCost, Vec<Bound>, Vec<ContactProblem>), SceneError> {
         let problem = |case: &CaseScene| ContactProblem::new(case.scene.clone());
         let problems = self.cases.iter().map(problem).collect::<Result<Vec<_>, SceneError>>()?;
         let weighted = |(case, problem): (_, _)| {
             let CaseScene { name, weight, .. }: &CaseScene = case;
-            Ok(WeightedCase { name, weight: *weight, measure: self.measure(problem)?, problem })
+            WeightedCase { name, weight: *weight, quantity: self.objective.clone(), problem }
         };
-        let weighted = self.cases.iter().zip(&problems).map(weighted).collect::<Result<Vec<_>, SceneError>>()?;
+        let weighted = self.cases.iter().zip(&problems).map(weighted).collect::<Vec<_>>();
         let cost = CasesCost::new(&weighted, self.over, &self.limits)?;
         let named = self.cases.iter().map(|case| case.name.as_str()).zip(&problems).collect::<Vec<_>>();
         let bounds = Bound::all(&self.limits, &named)?;
+        Told::all(&self.reports, &named)?;
         Ok((cost, bounds, problems))
     }
 
@@ -231,21 +231,40 @@ fn base(scene: &Scene) -> Option<[[f64; 2]; 2]> {
     scene.shaped_block().map(|(block, _)| [block.corner, block.size])
 }
 
-/// A limit of a case that is solved with an equal one, as a limit of that one.
-fn of_first_equal(limit: Limit, cases: &[CaseScene]) -> Limit {
-    let first = |name: &String| cases.iter().find(|case| case.equal.contains(name)).map(|case| case.name.clone());
-    Limit { case: limit.case.as_ref().map(|name| first(name).unwrap_or_else(|| name.clone())), ..limit }
+/// The details of all quantities that a file states, with their places.
+fn stated(file: &SceneFile) -> Vec<(String, &Details)> {
+    let limits = file.limit.iter().enumerate().map(|(index, own)| (format!("limit[{index}]"), &own.details));
+    let reports = file.report.iter().enumerate().map(|(index, own)| (format!("report[{index}]"), &own.details));
+    std::iter::once(("objective".to_owned(), &file.objective.details)).chain(limits).chain(reports).collect()
 }
 
-/// The method asked for, or the one that suits the objective: functions of the displacements are outputs like others
-/// where several cases or limits go with them.
-fn method(objective: &Objective, asked: Option<MethodName>, has_more: bool) -> Result<MethodName, SceneError> {
-    let composite = !objective.is_of_displacements() || (has_more && !objective.has_unknown_kinks());
+/// Checks a wanted pressure at the grid of the optimized block, without a mesh.
+fn check_wanted(objective: &Quantity, scene: &Scene) -> Result<(), SceneError> {
+    let Quantity::Pressure(PressureMeasure::Deviation { wanted }) = objective else { return Ok(()) };
+    let Some((block, heights)) = scene.shaped_block() else { return Ok(()) };
+    let places = block.grid().places().map(|[x1, x2]| [x1, x2, heights.start]).collect::<Vec<_>>();
+    wanted.at("objective.wanted.pressure", &places).map(|_| ())
+}
+
+/// The name of a case, or of the one that it is equal to and solved with.
+fn first_equal(name: Option<String>, cases: &[CaseScene]) -> Option<String> {
+    let name = name?;
+    let first = cases.iter().find(|case| case.equal.contains(&name));
+    Some(first.map_or(name, |case| case.name.clone()))
+}
+
+/// The method asked for, or the one that suits the objective: a single function of the state is an output like others
+/// where several cases or limits go with it.
+fn method(objective: &Quantity, asked: Option<MethodName>, has_more: bool) -> Result<MethodName, SceneError> {
+    // The composite model knows kinks of functions of the pressures alone.
+    let is_output = !objective.is_of_pressures() && !objective.is_of_shape();
+    let has_unknown_kinks = is_output && !objective.is_smooth();
+    let composite = !is_output || (has_more && !has_unknown_kinks);
     match asked {
         None if composite => Ok(MethodName::Composite),
         None => Ok(MethodName::Bundle),
-        Some(MethodName::Composite) if objective.has_unknown_kinks() => {
-            let allowed = "\"bundle\" with this objective, a maximum over points: the composite model takes smooth functions and functions of the contact pressures";
+        Some(MethodName::Composite) if has_unknown_kinks => {
+            let allowed = "\"bundle\" with this objective, which has kinks: the composite model takes smooth functions and functions of the contact pressures";
             Err(SceneError::out_of_range("optimizer.method", "composite", allowed))
         }
         Some(method) => Ok(method),
@@ -253,7 +272,7 @@ fn method(objective: &Objective, asked: Option<MethodName>, has_more: bool) -> R
 }
 
 /// Accuracy on demand is relative to |Θ|, which says nothing about the forces where Θ comes near 0.
-fn check_accuracy(objective: &Objective, accuracy: AccuracyName) -> Result<(), SceneError> {
+fn check_accuracy(objective: &Quantity, accuracy: AccuracyName) -> Result<(), SceneError> {
     if accuracy == AccuracyName::OnDemand && objective.can_vanish() {
         let allowed = "\"tightest\" with this objective: accuracy on demand is relative to the objective, which can reach or cross 0 here";
         return Err(SceneError::out_of_range("optimizer.accuracy", "on-demand", allowed));

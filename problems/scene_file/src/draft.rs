@@ -215,7 +215,7 @@ impl<'a> Draft<'a> {
         line("[contact.obstacle]");
         line(&self.obstacle());
         line("# What is minimised; peak-pressure, stress-norm and others are in docs/scenes.md.");
-        line("[objective]\nmeasure = \"pressure-norm\"\n");
+        line("[objective]\nquantity = \"pressure-norm\"\n");
         line("# No more volume than at the start.");
         line("[[limit]]\nquantity = \"relative-volume\"\nat_most = 1.0\n");
         line("# A second load case:");

@@ -25,7 +25,9 @@ mod mesh_file;
 mod objective;
 pub mod optimization;
 mod print;
+mod quantity;
 mod region;
+mod report;
 mod schema;
 mod setting;
 mod settings;
@@ -33,7 +35,6 @@ mod shapes;
 mod surfaces;
 mod table;
 mod text;
-mod wanted_pressure;
 
 pub use allowed::choices;
 pub use bodies::{BlockSection, BodySection, default_subdomains};
@@ -42,18 +43,19 @@ pub use contact_section::{ContactSection, FaceSection, FrictionSection};
 pub use continuation::ContinuationMesh;
 pub use draft::draft;
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
-pub use limit::{LimitSection, QuantityName};
+pub use limit::LimitSection;
 pub use load_case::{CaseBodySection, CaseScene, CaseSection};
 pub use loading::{Component, LoadSection, MaterialSection, SupportSection, UnitName, VolumeMaterialSection};
-pub use objective::{AxisName, MeasureName, Objective, ObjectiveSection, WantedSection};
+pub use objective::ObjectiveSection;
+pub use quantity::{AxisName, BaseSection, Details, QuantityName, WantedSection};
 pub use region::RegionSection;
+pub use report::ReportSection;
 pub use schema::schema;
 pub use setting::{Setting, check_path, set_field};
 pub use settings::{AccuracyName, MethodName, OptimizerSection, OutputSection, SolverSection};
 pub use surfaces::ObstacleSection;
 pub use table::field_tables;
 pub use text::read_text;
-pub use wanted_pressure::WantedPressure;
 
 use contact::error::SceneError;
 use schemars::JsonSchema;
@@ -89,6 +91,9 @@ pub struct SceneFile {
     /// Bounds on what the shape leads to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limit: Vec<LimitSection>,
+    /// Quantities that are told for every shape.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub report: Vec<ReportSection>,
     /// How the contact problem is solved.
     #[serde(default)]
     pub solver: SolverSection,
@@ -136,10 +141,16 @@ impl SceneFile {
     /// The files that the scene names, each with the name of its copy beside a copy of the scene.
     pub fn files_mut(&mut self) -> Vec<(String, &mut String)> {
         let [obstacle, start, wanted, continuation, mesh] = FILES;
-        let Self { body: bodies, contact: contacts, optimizer, .. } = self;
+        let Self { body: bodies, contact: contacts, optimizer, objective, limit: limits, report: reports, .. } = self;
         let mut files = Vec::new();
-        if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
-            files.push((wanted.to_owned(), file));
+        let of_limits = limits.iter_mut().map(|limit| &mut limit.details);
+        let of_reports = reports.iter_mut().map(|report| &mut report.details);
+        let count = 1 + of_limits.len() + of_reports.len();
+        let details = std::iter::once(&mut objective.details).chain(of_limits).chain(of_reports);
+        for (index, details) in details.enumerate() {
+            if let Some(WantedSection::Grid { file }) = &mut details.wanted {
+                files.push((numbered(wanted, index, count, ""), file));
+            }
         }
         let (count, meshes) = (optimizer.continuation.len(), optimizer.continuation.iter_mut().enumerate());
         let name = |index| numbered(continuation, index, count, "");

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 /// An isotropic elastic material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MaterialSection {
     /// Young's modulus E.
     #[schemars(range(min = 1e-9, max = 1e15), extend("x-unit" = "MPa"))]
@@ -19,6 +18,10 @@ pub struct MaterialSection {
     /// Cells: `mean-dilatation` against locking of nearly incompressible materials.
     #[serde(default)]
     pub formulation: Formulation,
+    /// Density, for masses. Default none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e15), extend("x-unit" = "kg/m³", "exclusiveMinimum" = 0.0))]
+    pub density: Option<f64>,
 }
 
 /// Displacements prescribed on a face: zero, or given values.
@@ -94,19 +97,12 @@ pub enum Component {
 
 /// An isotropic elastic material of a physical volume.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct VolumeMaterialSection {
     /// The physical volume.
     pub volume: String,
-    /// Young's modulus E.
-    #[schemars(range(min = 1e-9, max = 1e15), extend("x-unit" = "MPa"))]
-    pub young_modulus: f64,
-    /// Poisson's ratio.
-    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
-    pub poisson_ratio: f64,
-    /// Cells: `mean-dilatation` against locking of nearly incompressible materials.
-    #[serde(default)]
-    pub formulation: Formulation,
+    /// Its elastic constants.
+    #[serde(flatten)]
+    pub material: MaterialSection,
 }
 
 /// A unit of length.
@@ -148,14 +144,14 @@ impl UnitName {
 
 impl MaterialSection {
     pub(super) fn material(&self) -> Result<Material, SceneError> {
-        Ok(Material::new(self.young_modulus, self.poisson_ratio)?.with_formulation(self.formulation))
+        let material = Material::new(self.young_modulus, self.poisson_ratio)?.with_formulation(self.formulation);
+        self.density.map_or(Ok(material), |density| material.with_density(density))
     }
 }
 
 impl VolumeMaterialSection {
     pub(super) fn material(&self) -> Result<(String, Material), SceneError> {
-        let material = Material::new(self.young_modulus, self.poisson_ratio)?;
-        Ok((self.volume.clone(), material.with_formulation(self.formulation)))
+        Ok((self.volume.clone(), self.material.material()?))
     }
 }
 

@@ -29,14 +29,15 @@ pub struct RegionSection {
     /// A physical volume of the mesh. Default all volumes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub volume: Option<String>,
-    /// A face, whose nodes alone belong to the region; for `displacement`. Default none: the nodes of all its cells.
+    /// A face, whose nodes alone belong to the region; for `displacement` and `reaction`.
+    /// Default none: the nodes of all its cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub face: Option<String>,
 }
 
-/// Checks the body of a region that messages call `field`.
-pub(crate) fn check_body(field: &str, section: Option<&RegionSection>, scene: &Scene) -> Result<(), SceneError> {
-    let Some(name) = section.and_then(|section| section.body.as_ref()) else { return Ok(()) };
+/// Checks the body that a table names which messages call `field`.
+pub(crate) fn check_body(field: &str, name: Option<&String>, scene: &Scene) -> Result<(), SceneError> {
+    let Some(name) = name else { return Ok(()) };
     let names = scene.bodies.iter().map(|body| body.name.as_str());
     find(&format!("{field}.body"), name, names).map(|_| ())
 }

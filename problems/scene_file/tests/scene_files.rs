@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::equilibrium::ContactProblem;
 use contact::scene;
 use contact::scene::Held;
 use exchange::gmsh::{self, CellKind, FacetKind, GmshCell, GmshFacet, GmshMesh};
 use nonsmooth::{Accuracy, StateSolver, Vector};
-use scene_file::{Case, MethodName, Objective, SceneFile, field_tables, schema};
+use scene_file::{Case, MethodName, SceneFile, field_tables, schema};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
@@ -178,7 +178,7 @@ fn contradictions_between_fields_are_refused() {
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "upper.loads[1].face"),
         ("face = \"x1-max\"", "face = \"x1-mxa\"", "x1-max"),
-        ("weight = \"nodes\"", "measure = \"peak-pressure\"\nexponent = 4", "objective.exponent"),
+        ("weight = \"nodes\"", "quantity = \"peak-pressure\"\nexponent = 4", "objective.exponent"),
         ("[[contact]]", "[optimizer]\ncontinuation = [6, 6]\n[[contact]]", "optimizer.continuation"),
         (
             "held = [\"u1\"]",
@@ -280,51 +280,59 @@ fn with_objective(section: &str) -> Result<Case, String> {
 #[test]
 fn objectives_are_read_or_refused_with_the_field() {
     for section in [
-        "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100 + x1*x2\" }",
-        "measure = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"flat_punch.csv\" }",
-        "measure = \"open-area\"\npressure = 3.0",
-        "measure = \"stress-norm\"",
-        "measure = \"stress-norm\"\nexponent = 3.0\nregion = { body = \"upper\", x1 = [0.0, 5.0] }",
-        "measure = \"compliance\"",
-        "measure = \"stress\"\nwithout_held = true",
-        "measure = \"displacement\"\ncomponent = \"u3\"\nregion = { face = \"top\" }",
-        "measure = \"volume\"",
+        "quantity = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100 + x1*x2\" }",
+        "quantity = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"flat_punch.csv\" }",
+        "quantity = \"open-area\"\npressure = 3.0",
+        "quantity = \"stress-norm\"",
+        "quantity = \"stress-norm\"\nexponent = 3.0\nregion = { body = \"upper\", x1 = [0.0, 5.0] }",
+        "quantity = \"compliance\"",
+        "quantity = \"stress\"\nwithout_held = true",
+        "quantity = \"displacement\"\naxis = \"x3\"\nregion = { face = \"top\" }",
+        "quantity = \"volume\"",
+        "quantity = \"mean-pressure\"\ncontact = 0",
+        "quantity = \"contact-moment\"\naxis = \"x1\"\nabout = [1.0, 2.0, 3.0]",
+        "quantity = \"reaction\"\nregion = { face = \"x1-min\", body = \"lower\" }",
+        "quantity = \"slip\"",
+        "quantity = \"friction-work\"",
+        "quantity = \"loaded-area\"\npressure = 10.0",
+        "quantity = \"displacement\"\nrelative_to = { face = \"bottom\", body = \"lower\" }",
     ] {
         let case = with_objective(section).expect(section);
-        let is_of_displacements = ["stress", "compliance", "displacement"].iter().any(|name| section.contains(name));
-        assert_eq!(case.objective.is_of_displacements(), is_of_displacements);
-        let expected = if is_of_displacements { MethodName::Bundle } else { MethodName::Composite };
+        let has_model = ["pressure-", "open-area", "volume", "mass"].iter().any(|name| section.contains(name));
+        let expected = if has_model { MethodName::Composite } else { MethodName::Bundle };
         assert_eq!(case.method, expected, "{section}");
     }
     for (section, words) in [
-        ("measure = \"pressure-deviation\"", ["objective.wanted = missing", "form = \"formula\""]),
-        ("measure = \"open-area\"", ["objective.pressure = missing", "MPa"]),
-        ("measure = \"open-area\"\npressure = 0.0", ["objective.pressure = 0.0", "> 0"]),
-        ("measure = \"peak-pressure\"\nweight = \"nodes\"", ["objective.weight = nodes", "pressure norm"]),
+        ("quantity = \"pressure-deviation\"", ["objective.wanted = missing", "form = \"formula\""]),
+        ("quantity = \"open-area\"", ["objective.pressure = missing", "MPa"]),
+        ("quantity = \"open-area\"\npressure = 0.0", ["objective.pressure = 0.0", "> 0"]),
+        ("quantity = \"peak-pressure\"\nweight = \"nodes\"", ["objective.weight = nodes", "pressure-norm"]),
         ("weight = \"edges\"", ["objective.weight = \"edges\"", "\"area\", \"nodes\""]),
-        ("measure = \"compliance\"\nexponent = 3.0", ["objective.exponent = 3", "stress norm"]),
-        ("measure = \"stress-norm\"\npressure = 3.0", ["objective.pressure = 3", "open area"]),
+        ("quantity = \"compliance\"\nexponent = 3.0", ["objective.exponent = 3", "stress-norm"]),
+        ("quantity = \"stress-norm\"\npressure = 3.0", ["objective.pressure = 3", "open-area, loaded-area"]),
         (
-            "measure = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }",
-            ["objective.region", "stresses and displacements"],
+            "quantity = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }",
+            ["objective.region", "only with stress, stress-norm, displacement"],
         ),
-        ("measure = \"stress-norm\"\nregion = { x2 = [3.0, 1.0] }", ["objective.region.x2 = [3, 1]", "smaller"]),
-        ("measure = \"stress-norm\"\nregion = { x4 = [3.0, 1.0] }", ["objective.region.x4", "allowed: body, x1"]),
-        ("measure = \"stress-norm\"\nregion = { body = \"both\" }", ["objective.region.body = \"both\"", "\"lower\""]),
+        ("quantity = \"closed-area\"", ["objective.quantity = closed-area", "loaded-area or open-area"]),
+        ("quantity = \"slip\"\naxis = \"x1\"", ["objective.axis = x1", "displacement, contact-force"]),
+        ("quantity = \"stress-norm\"\nregion = { x2 = [3.0, 1.0] }", ["objective.region.x2 = [3, 1]", "smaller"]),
+        ("quantity = \"stress-norm\"\nregion = { x4 = [3.0, 1.0] }", ["objective.region.x4", "allowed: body, x1"]),
+        ("quantity = \"stress-norm\"\nregion = { body = \"both\" }", ["objective.region.body = \"both\"", "\"lower\""]),
         (
-            "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 5)\" }",
+            "quantity = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 5)\" }",
             ["inf at x1 = 5, x2 = 0, x3 = 10 mm", "objective.wanted.pressure"],
         ),
         (
-            "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"x1 + y\" }",
+            "quantity = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"x1 + y\" }",
             ["objective.wanted.pressure = \"y\" at character 6", "names x1, x2, x3"],
         ),
         (
-            "measure = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"none.csv\" }",
+            "quantity = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"none.csv\" }",
             ["none.csv", "No such file"],
         ),
         (
-            "measure = \"stress\"\n[optimizer]\nmethod = \"composite\"",
+            "quantity = \"stress\"\n[optimizer]\nmethod = \"composite\"",
             ["optimizer.method = composite", "allowed: \"bundle\" with this objective"],
         ),
     ] {
@@ -337,7 +345,7 @@ fn objectives_are_read_or_refused_with_the_field() {
 #[test]
 fn a_norm_counts_nodes_by_their_area_unless_the_scene_says_nodes() {
     let weight = |case: Case| match case.objective {
-        Objective::Pressure(PressureMeasure::Norm { exponent, weight }) => (exponent, weight),
+        Quantity::Pressure(PressureMeasure::Norm { exponent, weight }) => (exponent, weight),
         other => panic!("{other:?}"),
     };
     assert_eq!(weight(with_objective("").unwrap()), (4.0, NodeWeight::Area));
@@ -352,10 +360,10 @@ fn a_norm_counts_nodes_by_their_area_unless_the_scene_says_nodes() {
 #[test]
 fn accuracy_on_demand_is_refused_where_the_objective_can_vanish() {
     for objective in [
-        "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100\" }",
-        "measure = \"open-area\"\npressure = 3.0",
-        "measure = \"compliance\"",
-        "measure = \"displacement\"\ncomponent = \"u3\"\nregion = { face = \"top\" }",
+        "quantity = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100\" }",
+        "quantity = \"open-area\"\npressure = 3.0",
+        "quantity = \"compliance\"",
+        "quantity = \"displacement\"\naxis = \"x3\"\nregion = { face = \"top\" }",
     ] {
         let case = |accuracy: &str| with_objective(&format!("{objective}\n[optimizer]\naccuracy = \"{accuracy}\""));
         assert!(case("tightest").is_ok(), "{objective}");
@@ -364,7 +372,7 @@ fn accuracy_on_demand_is_refused_where_the_objective_can_vanish() {
             assert!(refusal.contains(words), "{objective}: {refusal}");
         }
     }
-    for objective in ["measure = \"pressure-norm\"", "measure = \"peak-pressure\"", "measure = \"stress-norm\""] {
+    for objective in ["quantity = \"pressure-norm\"", "quantity = \"peak-pressure\"", "quantity = \"stress-norm\""] {
         with_objective(&format!("{objective}\n[optimizer]\naccuracy = \"on-demand\"")).expect(objective);
     }
 }

@@ -50,7 +50,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     rest.extend(closing_facts(&warnings, &arguments.left_out(solver), usage.as_ref())?);
     let cases = case_facts::cases(objective, &loaded.case.cases, (vec![], &[&shape]), None)?;
     let scene = Group::new("", scene_words::facts(&solver.problem().scene)?);
-    let groups = vec![Group::new("", result), scene, cases, Group::new("State", states), Group::new("Work", rest)];
+    let reports = shape_facts::reports(vec![], &[&shape])?;
+    let groups =
+        vec![Group::new("", result), reports, scene, cases, Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
     let object = json(&facts)?;
     let write =
@@ -91,7 +93,6 @@ fn result<W>(
     ];
     result.extend(shape_facts::limits(&[shape]));
     result.extend(shape_facts::objective(objective, &[shape]).into_iter().skip(1));
-    result.extend(shape_facts::contact_areas(objective, &[shape]));
     let logarithm = (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10());
     result.extend([
         Fact::new("log10_objective", "log10 of Θ", logarithm, "").detail(),

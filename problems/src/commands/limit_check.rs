@@ -1,6 +1,6 @@
 //! The limits of a scene in a certificate, computed again.
 
-use contact::cost::{LimitSide, LimitedQuantity};
+use contact::cost::LimitSide;
 use contact::equilibrium::ContactProblem;
 use contact::load_cases::{Bound, CasesCost};
 use nonsmooth::{Certificate, CompositeProof, ConstraintKind, Vector};
@@ -58,7 +58,7 @@ impl LimitCheck {
             let limit = &bound.limit;
             let own = bound.of_shape(&problems[bound.case], &certificate.point);
             let range = cost.pressure_range(bound.case);
-            let is_peak = limit.quantity == LimitedQuantity::PeakPressure && limit.side == LimitSide::AtMost;
+            let is_peak = limit.quantity.is_peak() && limit.side == LimitSide::AtMost;
             let pressures = composite.filter(|_| is_peak);
             let peak = |composite: &CompositeProof| {
                 let pressures = composite.outputs.iter().skip(range.start).take(range.len());

@@ -20,11 +20,17 @@ impl LimitedValue {
         self.limit.excess(self.value)
     }
 
+    /// The quantity with its case.
+    pub fn title(&self) -> String {
+        let case = self.limit.case.as_ref().map_or_else(String::new, |case| format!(" in case \"{case}\""));
+        format!("{}{case}", self.limit.quantity.name())
+    }
+
     /// The limit in words: `peak-pressure at most 3400 MPa`.
     pub fn words(&self) -> String {
         let Limit { quantity, side, bound, case, .. } = &self.limit;
         let side = side.name().replace('_', " ");
-        let words = format!("{} {side} {} {}", quantity.name(), number(*bound), raised(quantity.unit()));
+        let words = format!("{} {side} {} {}", quantity.name(), number(*bound), raised(&quantity.unit()));
         let case = case.as_ref().map_or_else(String::new, |case| format!(" in case \"{case}\""));
         words.trim_end().to_owned() + &case
     }

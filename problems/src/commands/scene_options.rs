@@ -6,7 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use contact::error::SceneError;
-use scene_file::{MeasureName, MethodName, SceneFile, Setting, choices};
+use scene_file::{MethodName, QuantityName, SceneFile, Setting, choices};
 
 /// Largest traction of a scene, MPa.
 const LARGEST_TRACTION: f64 = 1e15;
@@ -89,8 +89,8 @@ const OPTIONS: [SceneOption; 14] = [
         adapt: measured,
         ..option(
             (OBJECTIVE, "objective", "NAME"),
-            &["objective.measure"],
-            "What is minimised; pressure-deviation needs the field objective.wanted, open-area objective.pressure",
+            &["objective.quantity"],
+            "What is minimised; pressure-deviation needs the field objective.wanted, open-area and loaded-area objective.pressure, reaction objective.region",
         )
     },
     option(
@@ -186,13 +186,15 @@ fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings 
     Ok(settings)
 }
 
-/// Exponent, wanted pressure and region of the file belong to the file's measure, as its method does.
+/// The details of the file belong to the file's quantity, as its method does.
 fn measured(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
-    let measure = file.with(&settings)?.objective.measure;
-    let has_model = !matches!(measure, MeasureName::StressNorm | MeasureName::Compliance);
+    use QuantityName::{Mass, OpenArea, PeakPressure, PressureDeviation, PressureNorm, RelativeVolume, Volume};
+    let quantity = file.with(&settings)?.objective.quantity;
+    let has_model =
+        matches!(quantity, PressureNorm | PeakPressure | PressureDeviation | OpenArea | Volume | RelativeVolume | Mass);
     let other_method = !has_model && file.optimizer.method == Some(MethodName::Composite);
-    let other_measure = measure != file.objective.measure;
-    let removals = [(other_measure, "objective"), (other_method, "optimizer.method")];
+    let other_quantity = quantity != file.objective.quantity;
+    let removals = [(other_quantity, "objective"), (other_method, "optimizer.method")];
     let removals = removals.iter().filter(|(wanted, _)| *wanted).map(|(_, path)| Setting::removal(path));
     Ok(removals.chain(settings).collect())
 }

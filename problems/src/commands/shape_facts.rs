@@ -1,9 +1,12 @@
 //! Facts about solved shapes: objective, peak pressure, and how far the contact states can be trusted.
 
-use crate::commands::facts::{Fact, Value};
-use crate::commands::numbers::{number, raised, reduction};
+use crate::commands::facts::{Fact, Group, Value};
+use crate::commands::failure::Failure;
+use crate::commands::numbers::{number, plain_unit, raised, reduction};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::contact_objective::PressureRoot;
+use contact::cost::Reported;
+use serde_json::{Map, json};
 
 /// Decrease of Θ, relative to Θ, up to which a shape is no better than another.
 const NO_DECREASE: f64 = 1e-9;
@@ -23,6 +26,38 @@ pub fn limits(shapes: &[&SolvedShape]) -> Vec<Fact> {
     (0..count).map(row).collect()
 }
 
+/// The quantities that the scene reports: a row for each, and the list `reports` in JSON.
+///
+/// # Errors
+/// [`Failure::Computation`] for a value that has no JSON.
+pub fn reports(labels: Vec<String>, shapes: &[&SolvedShape]) -> Result<Group, Failure> {
+    let Some(last) = shapes.last().filter(|shape| !shape.reports.is_empty()) else {
+        return Ok(Group::new("", Vec::new()));
+    };
+    let row = |(index, (report, _)): (usize, &(Reported, f64))| {
+        let values = shapes.iter().map(|shape| shape.reports[index].1.into()).collect();
+        Fact::row("", &report.title(), values, &raised(&report.quantity.unit()))
+    };
+    let mut facts: Vec<Fact> = last.reports.iter().enumerate().map(row).collect();
+    let object = |(index, (report, _)): (usize, &(Reported, f64))| {
+        let values: Vec<f64> = shapes.iter().map(|shape| shape.reports[index].1).collect();
+        let mut keys = Map::from_iter([
+            ("quantity".to_owned(), json!(report.quantity.name())),
+            ("unit".to_owned(), json!(plain_unit(&report.quantity.unit()))),
+        ]);
+        keys.extend(report.label.iter().map(|label| ("label".to_owned(), json!(label))));
+        keys.extend(report.case.iter().map(|case| ("case".to_owned(), json!(case))));
+        if let [start, .., _] = values[..] {
+            keys.insert("start".to_owned(), json!(start));
+        }
+        keys.insert("end".to_owned(), json!(values.last()));
+        keys
+    };
+    let list: Vec<_> = last.reports.iter().enumerate().map(object).collect();
+    facts.push(Fact::json("reports", &list)?);
+    Ok(Group { title: "Reports", columns: labels, facts, words: String::new() })
+}
+
 /// Θ of the shapes, and the root of a sum of powers of pressures, a pressure that can be compared.
 pub fn objective(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<Fact> {
     let value = row("objective", "objective Θ", &raised(&objective.unit()), shapes, &|shape| shape.value.into());
@@ -32,22 +67,6 @@ pub fn objective(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<F
             .meaning("the root of Θ; a shape of uniform pressure has it in proportion to the pressure")
     });
     std::iter::once(value).chain(root).collect()
-}
-
-/// Contact areas, where the open area is the objective.
-pub fn contact_areas(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<Fact> {
-    let areas =
-        shapes.iter().map(|shape| objective.contact_areas(shape.worst, shape.state())).collect::<Option<Vec<_>>>();
-    let Some(areas) = areas else { return Vec::new() };
-    let row = |key, name, value: fn(&contact::cost::ContactAreas) -> f64| {
-        Fact::row(key, name, areas.iter().map(|areas| value(areas).into()).collect(), "mm²")
-    };
-    vec![
-        row("contact_areas.closed", "contact area: closed nodes", |areas| areas.closed),
-        row("contact_areas.smoothed", "contact area, smoothed", |areas| areas.smoothed)
-            .meaning("Σ A min(σ/σ₀, 1), which the objective maximises"),
-        row("contact_areas.whole", "area of all contact nodes", |areas| areas.whole),
-    ]
 }
 
 /// The bound of the objective, the force, the numbers of nodes per status, and residuals. `kinks`: the names in JSON of

@@ -6,6 +6,7 @@ use crate::commands::failure::Failure;
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::plain_unit;
 use contact::contact_shape::ContactState;
+use contact::cost::Reported;
 use contact::fields::Fields;
 use contact::load_cases::CaseStates;
 use contact::plausibility::Warning;
@@ -44,6 +45,8 @@ pub struct SolvedShape {
     pub peak_pressure: f64,
     /// The limits with their quantities at the shape.
     pub limits: Vec<LimitedValue>,
+    /// The reports with their quantities at the shape.
+    pub reports: Vec<(Reported, f64)>,
 }
 
 impl SolvedShape {
@@ -55,7 +58,9 @@ impl SolvedShape {
         let peak_pressure = pressures.fold(f64::NEG_INFINITY, f64::max);
         let values = objective.limited_values(controls, &states).into_iter();
         let limits = objective.limits().cloned().zip(values).map(|(limit, value)| LimitedValue { limit, value });
-        Ok(Self { controls: controls.clone(), value, worst, peak_pressure, limits: limits.collect(), states })
+        let reports = objective.reported(controls, &states).into_iter();
+        let reports = reports.map(|(report, value)| (report.clone(), value)).collect();
+        Ok(Self { controls: controls.clone(), value, worst, peak_pressure, limits: limits.collect(), reports, states })
     }
 
     /// The state in the worst case, which is the only one of a scene without cases.

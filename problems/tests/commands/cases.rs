@@ -84,7 +84,7 @@ fn equal_cases_are_solved_once_and_worth_a_single_one() {
 fn limits_hold_in_all_cases_or_in_one_and_say_so() {
     let folder = scratch();
     let limits = "[[limit]]\nquantity = \"stress\"\nat_most = 5000.0\n\n\
-                  [[limit]]\nquantity = \"displacement\"\ncomponent = \"u3\"\nat_least = -0.2\ncase = \"left\"\n";
+                  [[limit]]\nquantity = \"displacement\"\naxis = \"x3\"\nat_least = -0.2\ncase = \"left\"\n";
     let scene = scene(folder.path(), limits);
     let found = json(contact3d(), &[&scene, "evaluate", "--mesh", "4", "--json"]);
     let limits = found["limits"].as_array().unwrap();

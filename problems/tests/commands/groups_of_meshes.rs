@@ -40,7 +40,7 @@ fn a_name_without_elements_is_refused_wherever_something_is_asked_of_it() {
         r#"body.lattice.fixed=["ghost"]"#,
         r#"limit=[{ quantity = "displacement", at_most = 1.0, region = { face = "ghost" } }]"#,
         r#"limit=[{ quantity = "stress", at_most = 1e3, region = { volume = "gone" } }]"#,
-        r#"objective={ measure = "stress-norm", region = { volume = "gone" } }"#,
+        r#"objective={ quantity = "stress-norm", region = { volume = "gone" } }"#,
     ];
     for setting in ghost {
         let output = run(CONTACT, &[&scene, "evaluate", "--set", setting]);

@@ -39,6 +39,7 @@ mod pages_run;
 mod pictures;
 mod pins;
 mod processes;
+mod quantities;
 #[path = "../../contact/tests/state/rank.rs"]
 mod rank;
 mod recheck;

@@ -57,7 +57,7 @@ fn a_resumed_run_says_that_its_time_limit_holds_again() {
 fn an_objective_without_a_value_on_a_later_mesh_is_refused_at_the_start() {
     let scratch = kit::scratch();
     let out = scratch.path().join("run");
-    let wanted = "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 4)\" }";
+    let wanted = "quantity = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 4)\" }";
     let file = scene(scratch.path(), "tangential.toml", wanted);
     let run = [&file, "--continuation", "2,10", "--max-evaluations", "2", "--out", text(&out)];
     refused(CONTACT, &run, &["optimizer.continuation[1]: objective.wanted.pressure", "x1 = 4, x2 = 0"]);
@@ -81,13 +81,13 @@ fn a_run_that_cannot_gain_anything_says_so() {
             .find(|warning| ["flat-objective", "least-objective"].contains(&warning["code"].as_str().unwrap()));
         found.map(|warning| format!("{}: {}", warning["code"].as_str().unwrap(), warning["text"].as_str().unwrap()))
     };
-    let area = |pressure: &str| format!("measure = \"open-area\"\npressure = {pressure}");
+    let area = |pressure: &str| format!("quantity = \"open-area\"\npressure = {pressure}");
     let above = warning(&area("1e6"), &[]).unwrap();
     assert!(above.contains("flat-objective") && above.contains("choose less than the largest pressure"), "{above}");
     let below = warning(&area("1e-6"), &[]).unwrap();
     assert!(below.contains("flat-objective") && below.contains("choose more than the least pressure"), "{below}");
     assert_eq!(warning(&area("200.0"), &["--max-evaluations", "3"]), None);
-    let idle = warning("measure = \"compliance\"", &["--load-factor", "0"]).unwrap();
+    let idle = warning("quantity = \"compliance\"", &["--load-factor", "0"]).unwrap();
     assert!(idle.contains("flat-objective") && idle.contains("nothing loads the bodies"), "{idle}");
 }
 

@@ -2,7 +2,7 @@
 
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use contact::scene::{Scene, hertz, signorini};
@@ -17,7 +17,7 @@ fn fields(scene: Scene) -> Fields {
     let shape = ContactShape::new(scene.with_bricks([4, 6, 2], [2, 3, 1]), SolverKind::Newton).unwrap();
     let control = shape.start();
     let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
-    let objective = ContactObjective::new(shape, Measure::Pressure(measure), &[]).unwrap();
+    let objective = ContactObjective::new(shape, Quantity::Pressure(measure), &[]).unwrap();
     let states = objective.cases().solve(&control, None, Accuracy::TIGHTEST).unwrap();
     let sensitivity = objective.position_sensitivity(&control, &states).unwrap();
     let mut fields = objective.solver().fields(&states[0]).unwrap();

@@ -123,8 +123,7 @@ pub fn text_of(published: &Value) -> String {
 pub fn objective(case: &Case, kind: SolverKind) -> ContactObjective {
     let plan = SolverPlan { kind, ..SolverPlan::new(case.scene.clone(), kind) };
     let shape = ContactShape::by(Processes::alone().solver(plan).expect("a solver"));
-    let measure = case.measure(shape.problem()).expect("a measure");
-    ContactObjective::new(shape, measure, &[]).expect("an objective")
+    ContactObjective::new(shape, case.objective.clone(), &[]).expect("an objective")
 }
 
 /// Value, gradient and state at some controls.

@@ -92,6 +92,8 @@ class Evaluation:
     limits : list of dict
         The limits: ``quantity``, ``case``, the bound as ``at_most``, ``at_least`` or ``equal_to``, the ``value``, and by how much it is
         beyond the bound, ``violation``.
+    reports : list of dict
+        What the scene reports: ``quantity``, ``label``, ``case``, ``unit`` and the ``value``.
     """
 
     theta: float
@@ -120,6 +122,7 @@ class Evaluation:
     warnings: list
     cases: dict
     limits: list
+    reports: list
 
     def plot(self, values="pressures", ax=None):
         """Draw values over the contact nodes, seen along their mean normal, with matplotlib.

@@ -42,6 +42,7 @@ class Evaluation:
     warnings: list[str]
     cases: dict[str, dict[str, Any]]
     limits: list[dict[str, Any]]
+    reports: list[dict[str, Any]]
     def plot(self, values: str = "pressures", ax: Any = None) -> Any: ...
 
 class Page:

@@ -1,12 +1,13 @@
-//! The largest or the smallest of many values of the displacements: stresses at integration points, displacements of
-//! nodes. Every point is a smooth function of its own.
+//! The largest or the smallest of many values of a contact state: stresses at integration points, displacements of
+//! nodes, slips. Every point is a smooth function of its own.
 
 use crate::body::Body;
-use crate::cost::field_piece::FieldPiece;
+use crate::cost::contact_work::{ContactNodes, component, direction};
+use crate::cost::piece::StatePiece;
 use crate::cost::region::RegionCells;
-use crate::equilibrium::SolvedBody;
-use crate::shape::ShapeMap;
-use std::sync::Arc;
+use crate::cost::row_terms::RowTerms;
+use crate::equilibrium::ContactProblem;
+use std::collections::BTreeMap;
 
 /// Distance of a value from the extreme one over the largest absolute value, up to which its point is a piece: what a
 /// step of an optimizer changes.
@@ -19,20 +20,24 @@ const MAX_PIECES: usize = 200;
 pub(super) enum Points {
     /// Von Mises stresses at the integration points of some cells, MPa.
     Stresses(RegionCells),
-    /// Displacements of some nodes of every body, mm: along an axis, or their lengths.
-    Displacements { nodes: Vec<Vec<u32>>, component: Option<usize> },
+    /// Displacements of some nodes of every body, mm, less their mean over others: along an axis, or their lengths.
+    Displacements { nodes: Vec<Vec<u32>>, base: MeanNodes, axis: Option<usize> },
+    /// Lengths of the slips of some contact nodes, mm.
+    Slips(ContactNodes),
 }
+
+/// Nodes of some bodies with weights of sum 1, or none.
+pub(super) type MeanNodes = Vec<(usize, u32, f64)>;
 
 /// The largest value of some points, or the smallest.
 #[derive(Debug, Clone)]
 pub(super) struct Extreme {
     pub points: Points,
     pub least: bool,
-    pub bodies: Arc<[Body]>,
-    pub map: Arc<ShapeMap>,
 }
 
-/// A point: its body, the place of its cell among those of the region or its node, and its integration point.
+/// A point: its body, the place of its cell among those of the region or its node, and its integration point. Of slips,
+/// the place of the contact node.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     body: usize,
@@ -41,23 +46,23 @@ struct Place {
 }
 
 impl Extreme {
-    /// The extreme value of solved bodies, lower first.
-    pub fn value(&self, solved: &[SolvedBody]) -> f64 {
-        self.way() * self.values(solved).iter().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(self.way() * value))
+    /// The extreme value at a state.
+    pub fn value(&self, terms: RowTerms<'_>) -> f64 {
+        self.way() * self.values(terms).iter().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(self.way() * value))
     }
 
     /// The points within [`NEAR`] of the extreme value, that of it first; of equal ones the first.
-    pub fn pieces(&self, solved: &[SolvedBody]) -> Vec<FieldPiece> {
-        self.pieces_within(solved, NEAR, MAX_PIECES)
+    pub fn pieces(&self, terms: RowTerms<'_>) -> Vec<StatePiece> {
+        self.pieces_within(terms, NEAR, MAX_PIECES)
     }
 
     /// The first point of extreme value.
-    pub fn first(&self, solved: &[SolvedBody]) -> Option<FieldPiece> {
-        self.pieces_within(solved, 0.0, 1).pop()
+    pub fn first(&self, terms: RowTerms<'_>) -> Option<StatePiece> {
+        self.pieces_within(terms, 0.0, 1).pop()
     }
 
-    fn pieces_within(&self, solved: &[SolvedBody], near: f64, most: usize) -> Vec<FieldPiece> {
-        let mut values = self.values(solved);
+    fn pieces_within(&self, terms: RowTerms<'_>, near: f64, most: usize) -> Vec<StatePiece> {
+        let mut values = self.values(terms);
         let way = self.way();
         let best = values.iter().fold(f64::NEG_INFINITY, |best, (value, _)| best.max(way * value));
         let size = values.iter().fold(0.0, |size: f64, (value, _)| size.max(value.abs()));
@@ -65,7 +70,7 @@ impl Extreme {
         // The sort is stable: points of equal value stay in their order.
         values.sort_by(|(a, _), (b, _)| (way * b).total_cmp(&(way * a)));
         values.truncate(most);
-        values.into_iter().map(|(value, place)| self.piece(solved, value, place)).collect()
+        values.into_iter().map(|(value, place)| self.piece(terms, value, place)).collect()
     }
 
     /// 1 where the largest value counts, else −1.
@@ -73,10 +78,11 @@ impl Extreme {
         if self.least { -1.0 } else { 1.0 }
     }
 
-    fn values(&self, solved: &[SolvedBody]) -> Vec<(f64, Place)> {
+    fn values(&self, terms: RowTerms<'_>) -> Vec<(f64, Place)> {
+        let (bodies, at) = (&terms.problem.bodies, terms.at);
         match &self.points {
             Points::Stresses(cells) => {
-                let stresses = cells.map(&self.bodies, solved, |cell, modulus, u| cell.point_stresses(modulus, u));
+                let stresses = cells.map(bodies, at.bodies, |cell, modulus, u| cell.point_stresses(modulus, u));
                 let of_cell = |body: usize, (at, stresses): (usize, Vec<f64>)| {
                     let place = move |(point, stress)| (stress, Place { body, at, point });
                     stresses.into_iter().enumerate().map(place)
@@ -86,56 +92,96 @@ impl Extreme {
                     .flat_map(|(body, cells)| cells.into_iter().enumerate().flat_map(move |cell| of_cell(body, cell)))
                     .collect()
             }
-            Points::Displacements { nodes, component } => {
-                let of_body = |(body, (nodes, solved)): (usize, (&Vec<u32>, &SolvedBody))| {
+            Points::Displacements { nodes, base, axis } => {
+                let mean = mean(terms, base);
+                let of_body = |(body, nodes): (usize, &Vec<u32>)| {
                     let of_node = |&node: &u32| {
-                        let u = solved.displacement[node as usize];
-                        let value = component.map_or_else(|| length(u), |axis| u[axis]);
-                        (value, Place { body, at: node as usize, point: 0 })
+                        let moved = less(at.displacement(body, node), mean);
+                        (component(moved, *axis), Place { body, at: node as usize, point: 0 })
                     };
                     nodes.iter().map(of_node).collect::<Vec<_>>()
                 };
-                nodes.iter().zip(solved).enumerate().flat_map(of_body).collect()
+                nodes.iter().enumerate().flat_map(of_body).collect()
+            }
+            Points::Slips(nodes) => {
+                let u = terms.weighted(&|body, node| at.displacement(body, node));
+                let slip = |index: usize| (terms.slip(index, &u).0, Place { body: 0, at: index, point: 0 });
+                nodes.opening(&at).map(slip).collect()
             }
         }
     }
 
-    fn piece(&self, solved: &[SolvedBody], value: f64, place: Place) -> FieldPiece {
-        let before: usize = solved[..place.body].iter().map(|body| body.mesh.node_count()).sum();
-        let index = |node: usize, axis: usize| 3 * (before + node) + axis;
+    fn piece(&self, terms: RowTerms<'_>, value: f64, place: Place) -> StatePiece {
         match &self.points {
             Points::Stresses(cells) => {
-                let (cell, solved, body) =
-                    (cells.cells[place.body][place.at], &solved[place.body], &self.bodies[place.body]);
-                let u = body.mesh.cell_values(cell, &solved.displacement);
-                let shear_modulus = body.solid.material(cell).shear_modulus();
-                let stressed = body.mesh.cell_nodes(cell, &solved.positions);
-                let stressed = stressed.stressed_at(place.point, shear_modulus, &u);
-                let nodes = body.mesh.cell(cell).nodes;
-                let of_node = |(node, entries): (&u32, &[f64; 3])| {
-                    let (node, entries) = (*node as usize, *entries);
-                    (0..3).map(move |axis| (index(node, axis), entries[axis]))
-                };
-                let displacements = nodes.iter().zip(&stressed.by_displacement).flat_map(of_node).collect();
-                let moving = nodes.iter().zip(stressed.by_position);
-                let moving = moving.filter(|(node, _)| self.map.moves(place.body, **node));
-                let positions = moving.map(|(node, entry)| (before + *node as usize, entry));
-                FieldPiece { value, displacements, positions: positions.collect() }
+                stress_piece(terms, value, (place.body, cells.cells[place.body][place.at], place.point))
             }
-            Points::Displacements { component, .. } => {
-                let u = solved[place.body].displacement[place.at];
-                let displacements = match component {
-                    Some(axis) => vec![(index(place.at, *axis), 1.0)],
-                    // The length has no derivative at 0; 0 is one of its subgradients there.
-                    None if value == 0.0 => Vec::new(),
-                    None => (0..3).map(|axis| (index(place.at, axis), u[axis] / value)).collect(),
-                };
-                FieldPiece { value, displacements, positions: Vec::new() }
+            Points::Displacements { base, axis, .. } => {
+                let problem = terms.problem;
+                let moved = less(terms.at.displacement(place.body, place.at as u32), mean(terms, base));
+                let along = direction(moved, *axis);
+                let own = std::iter::once((place.body, place.at as u32, 1.0));
+                let weighted = own.chain(base.iter().map(|&(body, node, weight)| (body, node, -weight)));
+                StatePiece { value, displacements: entries(problem, weighted, along), positions: Vec::new() }
             }
+            Points::Slips(_) => slip_piece(terms, value, place.at),
         }
     }
 }
 
-fn length(u: [f64; 3]) -> f64 {
-    u.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+/// Nonzero derivatives of Σ weights · e·u by the displacements.
+fn entries(
+    problem: &ContactProblem,
+    weighted: impl Iterator<Item = (usize, u32, f64)>,
+    along: [f64; 3],
+) -> Vec<(usize, f64)> {
+    let of_node = |(body, node, weight): (usize, u32, f64)| {
+        let first = 3 * problem.map.number(body, node);
+        (0..3).map(move |axis| (first + axis, weight * along[axis]))
+    };
+    weighted.flat_map(of_node).filter(|(_, entry)| *entry != 0.0).collect()
+}
+
+/// The stress at an integration point of a cell.
+fn stress_piece(terms: RowTerms<'_>, value: f64, (number, cell, point): (usize, usize, usize)) -> StatePiece {
+    let (problem, solved): (_, _) = (terms.problem, &terms.at.bodies[number]);
+    let body: &Body = &problem.bodies[number];
+    let u = body.mesh.cell_values(cell, &solved.displacement);
+    let shear_modulus = body.solid.material(cell).shear_modulus();
+    let stressed = body.mesh.cell_nodes(cell, &solved.positions).stressed_at(point, shear_modulus, &u);
+    let nodes = body.mesh.cell(cell).nodes;
+    let of_node = |(node, entries): (&u32, &[f64; 3])| {
+        let (first, entries) = (3 * problem.map.number(number, *node), *entries);
+        (0..3).map(move |axis| (first + axis, entries[axis]))
+    };
+    let displacements = nodes.iter().zip(&stressed.by_displacement).flat_map(of_node).collect();
+    let moving = nodes.iter().zip(stressed.by_position).filter(|(node, _)| problem.map.moves(number, **node));
+    let positions = moving.map(|(node, entry)| (problem.node_number(number, *node), entry)).collect();
+    StatePiece { value, displacements, positions }
+}
+
+/// The length of the slip of a contact node.
+fn slip_piece(terms: RowTerms<'_>, value: f64, index: usize) -> StatePiece {
+    let (problem, at) = (terms.problem, terms.at);
+    let u = terms.weighted(&|body, node| at.displacement(body, node));
+    let mut displacements = BTreeMap::new();
+    let positions = terms.slip_gradient(index, &u, |body, node, share| {
+        let first = 3 * problem.map.number(body, node);
+        (0..3).for_each(|axis| *displacements.entry(first + axis).or_insert(0.0) += share[axis]);
+    });
+    displacements.retain(|_, entry| *entry != 0.0);
+    let positions = positions.into_iter().enumerate().filter(|(_, entry)| *entry != [0.0; 3]).collect();
+    StatePiece { value, displacements: displacements.into_iter().collect(), positions }
+}
+
+/// Σ weights · u over some nodes, mm.
+fn mean(terms: RowTerms<'_>, nodes: &MeanNodes) -> [f64; 3] {
+    nodes.iter().fold([0.0; 3], |sum, &(body, node, weight)| {
+        let u = terms.at.displacement(body, node);
+        std::array::from_fn(|axis| sum[axis] + weight * u[axis])
+    })
+}
+
+fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| a[axis] - b[axis])
 }

@@ -1,28 +1,10 @@
-//! Limits: quantities that a shape must keep on one side of a bound, or at it, beside the objective.
+//! Limits: quantities that a shape must keep on one side of a bound, or at it, beside the objective. Reports: quantities
+//! that are told.
 
-use crate::cost::FieldMeasure;
+use crate::cost::Quantity;
 use crate::error::SceneError;
 use crate::names::find;
 use nonsmooth::ConstraintKind;
-
-/// What a limit bounds.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum LimitedQuantity {
-    /// The largest contact pressure, MPa.
-    PeakPressure,
-    /// Σ A min(σ/σ₀, 1), mm²: the loaded area.
-    LoadedArea {
-        /// The pressure σ₀ > 0 from which a node counts with its whole area, MPa.
-        pressure: f64,
-    },
-    /// A function of the displacements, in its unit.
-    Field(FieldMeasure),
-    /// The volume of the lower body over that of the scene at the start.
-    RelativeVolume,
-    /// The volume of the lower body, mm³.
-    Volume,
-}
 
 /// The side of its bound on which a quantity must stay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +21,7 @@ pub enum LimitSide {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
     /// What it bounds.
-    pub quantity: LimitedQuantity,
+    pub quantity: Quantity,
     /// The load case in which it holds; none: in all.
     pub case: Option<String>,
     /// The side.
@@ -49,6 +31,48 @@ pub struct Limit {
     /// What counts as a typical value of a quantity that may be zero, in its unit: a bound may be zero as well. 0 where
     /// no bound is.
     pub typical: f64,
+}
+
+/// A quantity that is told beside objective and limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reported {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// What it is called; none for the name of the quantity.
+    pub label: Option<String>,
+    /// The load case in which it is told; none: in all.
+    pub case: Option<String>,
+}
+
+impl Reported {
+    /// What it is called, with its case.
+    pub fn title(&self) -> String {
+        let case = self.case.as_ref().map_or_else(String::new, |case| format!(" in case \"{case}\""));
+        format!("{}{case}", self.label.as_deref().unwrap_or(self.quantity.name()))
+    }
+
+    /// The report in all its cases, with their numbers: one per case without a case of its own, but one of the shape
+    /// stays one. `place`: what messages call it.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for an unknown case.
+    pub(crate) fn in_cases(&self, place: &str, names: &[&str]) -> Result<Vec<(Self, usize)>, SceneError> {
+        let find = |case| find(&format!("{place}.case"), case, names.iter().copied());
+        let case = self.case.as_deref().map(find).transpose()?;
+        let own = cases_of(&self.quantity, case, names).into_iter();
+        Ok(own.map(|(case, name)| (Self { case: name, ..self.clone() }, case)).collect())
+    }
+}
+
+/// The cases in which a quantity is measured, with their names where there are several.
+fn cases_of(quantity: &Quantity, case: Option<usize>, names: &[&str]) -> Vec<(usize, Option<String>)> {
+    let several = names.len() > 1 && !quantity.is_of_shape();
+    let cases = match case {
+        Some(case) => case..case + 1,
+        None if several => 0..names.len(),
+        None => 0..1,
+    };
+    cases.map(|case| (case, several.then(|| names[case].to_owned()))).collect()
 }
 
 /// Share of its scale by which a quantity that keeps its bound may be off. Steps along a curved constraint miss it by a
@@ -66,47 +90,9 @@ impl LimitSide {
     }
 }
 
-impl LimitedQuantity {
-    /// Its name in scene files and reports.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::PeakPressure => "peak-pressure",
-            Self::LoadedArea { .. } => "loaded-area",
-            Self::Field(measure) => measure.name(),
-            Self::RelativeVolume => "relative-volume",
-            Self::Volume => "volume",
-        }
-    }
-
-    /// Its unit; empty for ratios.
-    pub fn unit(&self) -> &'static str {
-        match self {
-            Self::PeakPressure => "MPa",
-            Self::LoadedArea { .. } => "mm^{2}",
-            Self::Field(measure) => measure.unit(),
-            Self::RelativeVolume => "",
-            Self::Volume => "mm^{3}",
-        }
-    }
-
-    /// Whether the shape alone decides it, without a contact state.
-    pub fn is_of_shape(&self) -> bool {
-        matches!(self, Self::RelativeVolume | Self::Volume)
-    }
-
-    /// Whether it is continuously differentiable where no contact node changes its status.
-    pub fn is_smooth(&self) -> bool {
-        match self {
-            Self::PeakPressure | Self::LoadedArea { .. } => false,
-            Self::Field(measure) => measure.is_smooth(),
-            Self::RelativeVolume | Self::Volume => true,
-        }
-    }
-}
-
 impl Limit {
     /// A limit in all load cases.
-    pub fn new(quantity: LimitedQuantity, side: LimitSide, bound: f64) -> Self {
+    pub fn new(quantity: Quantity, side: LimitSide, bound: f64) -> Self {
         Self { quantity, case: None, side, bound, typical: 0.0 }
     }
 
@@ -126,16 +112,10 @@ impl Limit {
         let mut found = Vec::new();
         for limit in limits {
             let case = limit.case.as_ref().map(|case| find("limit.case", case, names.iter().copied())).transpose()?;
-            let several = names.len() > 1 && !limit.quantity.is_of_shape();
-            let cases = match case {
-                Some(case) => case..case + 1,
-                None if several => 0..names.len(),
-                None => 0..1,
-            };
-            let of = |case: usize| several.then(|| names[case].to_owned());
-            found.extend(cases.map(|case| (Self { case: of(case), ..limit.clone() }, case)));
+            let own = cases_of(&limit.quantity, case, names).into_iter();
+            found.extend(own.map(|(case, name)| (Self { case: name, ..limit.clone() }, case)));
         }
-        let is_peak = |limit: &Self| limit.quantity == LimitedQuantity::PeakPressure;
+        let is_peak = |limit: &Self| limit.quantity.is_peak();
         found.sort_by_key(|(limit, case)| if is_peak(limit) { (0, *case) } else { (1, 0) });
         Ok(found)
     }
@@ -158,10 +138,11 @@ impl Limit {
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for a quantity with kinks that must be at its bound, and for bounds that are not
-    /// finite; those of volumes and peak pressures must be > 0.
+    /// finite; those of volumes, masses and peak pressures must be > 0.
     pub(crate) fn kind(&self) -> Result<ConstraintKind, SceneError> {
         let field = || format!("limit of {}", self.quantity.name());
-        let positive = self.quantity.is_of_shape() || self.quantity == LimitedQuantity::PeakPressure;
+        self.quantity.check_differentiable("limit.quantity")?;
+        let positive = self.quantity.is_of_shape() || self.quantity.is_peak();
         let allowed = if positive { "a finite number > 0" } else { "a finite number" };
         SceneError::require(self.bound.is_finite() && (self.bound > 0.0 || !positive), field(), self.bound, allowed)?;
         match (self.quantity.is_of_shape(), self.side) {
@@ -194,7 +175,7 @@ mod tests {
     #[test]
     fn a_bound_of_zero_has_a_scale() {
         for side in [LimitSide::AtMost, LimitSide::AtLeast] {
-            let limit = Limit::new(LimitedQuantity::LoadedArea { pressure: 1.0 }, side, 0.0);
+            let limit = Limit::new(Quantity::LoadedArea { pressure: 1.0 }, side, 0.0);
             let beyond = |value: f64| limit.excess(limit.sign() * value) / limit.scale();
             assert_eq!([beyond(-1.0), beyond(0.0), beyond(0.5 * ALLOWANCE), beyond(0.25)], [0.0, 0.0, 0.0, 0.25]);
             let typical = Limit { typical: 1e-3, ..limit };

@@ -1,38 +1,36 @@
-//! What a shape is rated by: functions of the contact pressures, and functions of the displacements.
+//! What a shape is rated by: [`Quantity`] names it, and it is computed on the mesh of a problem.
 //!
 //! ```text
-//! pressures:      h(σ) with a convex h, an outer function of the composite model               method.md (3.4), (3.5), (3.6)
-//! displacements:  J(α, u), whose gradient ∂J/∂u is a load in the adjoint problem               method.md (3.7), (3.8), (5.5)
+//! pressures:   h(σ) with a convex h, an outer function of the composite model                  method.md (3.4), (3.5), (3.6)
+//! states:      J(x, λ, u), whose derivatives by λ and u are the dual of the adjoint problem    method.md (3.7), (3.8), (5.5)
+//! shapes:      V(x) and the mass
 //! ```
 
+mod contact_work;
 mod extreme;
-mod field;
-mod field_measure;
-mod field_piece;
 mod limit;
 mod outputs;
+mod piece;
 mod pressure;
 mod pressure_measure;
+mod quantity;
+mod reaction;
 mod region;
-mod volume;
+mod row_terms;
+mod shape_function;
+mod state_cost;
+mod state_view;
+mod stress_norm;
+mod wanted_pressure;
 
-pub use field::FieldCost;
-pub use field_measure::FieldMeasure;
-pub use field_piece::{FieldGradient, FieldPiece};
-pub use limit::{Limit, LimitSide, LimitedQuantity};
+pub use limit::{Limit, LimitSide, Reported};
 pub use outputs::PressureOutputs;
+pub use piece::{StateGradient, StatePiece};
 pub use pressure::PressureCost;
-pub use pressure_measure::{ContactAreas, NodeWeight, PressureMeasure, PressureRoot};
+pub use pressure_measure::{NodeWeight, PressureMeasure, PressureRoot};
+pub use quantity::Quantity;
 pub use region::{Region, RegionCells};
-pub(crate) use volume::{volume, volume_gradient, volume_slope};
-
-/// The function of a contact state that is minimised.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Measure {
-    /// A function of the contact pressures.
-    Pressure(PressureMeasure),
-    /// A function of the displacements.
-    Field(FieldMeasure),
-    /// The volume of the bodies that controls shape, mm³.
-    Volume,
-}
+pub use shape_function::ShapeFunction;
+pub use state_cost::StateCost;
+pub use state_view::StateView;
+pub use wanted_pressure::WantedPressure;

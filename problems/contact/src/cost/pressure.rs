@@ -5,7 +5,8 @@
 //! ```
 
 use crate::cost::outputs::{PressureOutputs, Scaling};
-use crate::cost::pressure_measure::{ContactAreas, NodeWeight, PressureMeasure, PressureRoot};
+use crate::cost::pressure_measure::{NodeWeight, PressureMeasure, PressureRoot};
+use crate::cost::state_view::StateView;
 use crate::equilibrium::{ContactProblem, ContactState};
 use crate::error::SceneError;
 use nonsmooth::composite::{Maximum, OuterFunction, weighted_gram};
@@ -16,6 +17,8 @@ use nonsmooth::{Matrix, Vector};
 #[derive(Debug, Clone)]
 pub struct PressureCost {
     measure: PressureMeasure,
+    /// The wanted pressure per contact node, MPa, of a deviation.
+    wanted: Vec<f64>,
     /// Whether the value of a norm is its root in MPa.
     is_root: bool,
     /// What the nodes count in a norm; empty for the other measures.
@@ -36,36 +39,41 @@ impl PressureCost {
     /// The cost on the contact boundary of a problem.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, wanted pressures are finite, and σ₀ is finite
-    /// and > 0; [`SceneError::WrongCount`] unless there is one wanted pressure per contact node.
+    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1 and σ₀ is finite and > 0; as
+    /// [`WantedPressure::at`](crate::cost::WantedPressure::at).
     pub fn new(measure: PressureMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
-        Self::over(measure, problem.start_rows().areas(), problem.areas_change())
+        Self::named("objective", measure, problem)
+    }
+
+    /// The cost on the contact boundary of a problem; `place`: what messages call the table that has the measure.
+    ///
+    /// # Errors
+    /// As [`PressureCost::new`].
+    pub(crate) fn named(place: &str, measure: PressureMeasure, problem: &ContactProblem) -> Result<Self, SceneError> {
+        let wanted = match &measure {
+            PressureMeasure::Deviation { wanted } => wanted.at_nodes(place, problem)?,
+            _ => Vec::new(),
+        };
+        Self::over(place, measure, wanted, (problem.start_rows().areas(), problem.areas_change()))
     }
 
     /// The cost over contact nodes with these areas at the start, which may change with the shape.
-    fn over(measure: PressureMeasure, areas: Vec<f64>, areas_change: bool) -> Result<Self, SceneError> {
+    fn over(
+        place: &str,
+        measure: PressureMeasure,
+        wanted: Vec<f64>,
+        (areas, areas_change): (Vec<f64>, bool),
+    ) -> Result<Self, SceneError> {
         match &measure {
             PressureMeasure::Peak => {}
             PressureMeasure::Norm { exponent, .. } => {
                 let valid = *exponent > 1.0 && exponent.is_finite();
-                SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
+                SceneError::require(valid, format!("{place}.exponent"), exponent, "a finite number > 1")?;
             }
-            PressureMeasure::Deviation { wanted } => {
-                let (expected, found) = (areas.len(), wanted.len());
-                if expected != found {
-                    return Err(SceneError::WrongCount { what: "wanted pressures".into(), expected, found });
-                }
-                if let Some((index, value)) = wanted.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-                    return Err(SceneError::out_of_range(
-                        format!("wanted pressure {index}"),
-                        value,
-                        "finite numbers (MPa)",
-                    ));
-                }
-            }
+            PressureMeasure::Deviation { .. } => {}
             PressureMeasure::OpenArea { pressure } => {
                 let valid = *pressure > 0.0 && pressure.is_finite();
-                SceneError::require(valid, "objective.pressure", pressure, "a finite number > 0 (MPa)")?;
+                SceneError::require(valid, format!("{place}.pressure"), pressure, "a finite number > 0 (MPa)")?;
             }
         }
         let weights = match &measure {
@@ -73,7 +81,7 @@ impl PressureCost {
             PressureMeasure::Norm { weight: NodeWeight::Nodes, .. } => vec![1.0; areas.len()],
             _ => vec![],
         };
-        Ok(Self { measure, is_root: false, weights, areas, areas_change })
+        Ok(Self { measure, wanted, is_root: false, weights, areas, areas_change })
     }
 
     /// Whether a norm may leave the range of doubles for the pressures of a problem. Its [root](Self::rooted) in MPa
@@ -109,10 +117,7 @@ impl PressureCost {
 
     /// The wanted pressure per contact node, MPa, of a deviation; none for the other measures.
     pub fn wanted(&self) -> Option<&[f64]> {
-        match &self.measure {
-            PressureMeasure::Deviation { wanted } => Some(wanted),
-            _ => None,
-        }
+        matches!(self.measure, PressureMeasure::Deviation { .. }).then_some(self.wanted.as_slice())
     }
 
     /// p where the value is the root of a norm, (Σσ^p)^{1/p} or (∫σ^p dA / ΣA)^{1/p}, else 1.
@@ -136,9 +141,7 @@ impl PressureCost {
     /// Where the value is the root of a norm, the factor and the unit of the norm: factor times value to the power p.
     pub fn norm_of_root(&self) -> Option<(f64, String)> {
         match self.measure {
-            PressureMeasure::Norm { exponent, weight } if self.is_root => {
-                Some((self.root_size(), norm_unit(exponent, weight)))
-            }
+            PressureMeasure::Norm { .. } if self.is_root => Some((self.root_size(), self.measure.unit())),
             _ => None,
         }
     }
@@ -146,19 +149,9 @@ impl PressureCost {
     /// The unit of the value, such as `MPa^{4}·mm^{2}`.
     pub fn unit(&self) -> String {
         match &self.measure {
-            &PressureMeasure::Norm { exponent, weight } if !self.is_root => norm_unit(exponent, weight),
-            PressureMeasure::Norm { .. } | PressureMeasure::Peak => "MPa".into(),
-            PressureMeasure::Deviation { .. } => "MPa^{2}".into(),
-            PressureMeasure::OpenArea { .. } => "mm^{2}".into(),
+            PressureMeasure::Norm { .. } if self.is_root => "MPa".into(),
+            measure => measure.unit(),
         }
-    }
-
-    /// The contact areas of a state, where the open area is what is minimised.
-    pub fn contact_areas<S>(&self, state: &ContactState<S>) -> Option<ContactAreas> {
-        let PressureMeasure::OpenArea { .. } = self.measure else { return None };
-        let (whole, closed) = (state.rows.area(), state.rows.closed_area(&state.forces.status));
-        let open = self.value_of(state);
-        Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
 
     /// Why the value does not change with the pressures near those of a state, in words with a remedy: where σ₀ of the
@@ -203,7 +196,7 @@ impl PressureCost {
                 }
             }
             PressureMeasure::Peak => total_force / whole(),
-            PressureMeasure::Deviation { wanted } => least_deviation(&self.areas, wanted, total_force),
+            PressureMeasure::Deviation { .. } => least_deviation(&self.areas, &self.wanted, total_force),
             PressureMeasure::OpenArea { pressure } => (whole() - total_force / pressure).max(0.0),
         }
     }
@@ -212,7 +205,12 @@ impl PressureCost {
 impl PressureCost {
     /// The value at a state.
     pub fn value_of<S>(&self, state: &ContactState<S>) -> f64 {
-        self.value(&Vector::from_vec(self.outputs(false).values(&state.forces.normal, &state.rows.areas())))
+        self.value_at(StateView::of(state))
+    }
+
+    /// As [`value_of`](Self::value_of), from what the solver does not keep.
+    pub(super) fn value_at(&self, at: StateView<'_>) -> f64 {
+        self.value(&Vector::from_vec(self.outputs(false).values(&at.forces.normal, &at.rows.areas())))
     }
 
     /// The outputs of a state that this cost is a function of: the pressures where areas do not change. With
@@ -226,7 +224,7 @@ impl PressureCost {
                 Scaling::Power { exponent, is_mean: self.is_root }
             }
             PressureMeasure::Norm { .. } | PressureMeasure::Peak => Scaling::Pressure,
-            PressureMeasure::Deviation { wanted } => Scaling::Deviation { wanted: wanted.clone() },
+            PressureMeasure::Deviation { .. } => Scaling::Deviation { wanted: self.wanted.clone() },
             PressureMeasure::OpenArea { pressure } => Scaling::OpenArea { pressure: *pressure },
         };
         let with_pressures = with_pressures && scaling != Scaling::Pressure;
@@ -250,9 +248,9 @@ impl PressureCost {
                 Vector::from_iterator(pressures.len(), pressures.iter().zip(&self.weights).map(slope))
             }
             PressureMeasure::Peak => Maximum.subgradient(pressures),
-            PressureMeasure::Deviation { wanted } => {
+            PressureMeasure::Deviation { .. } => {
                 let whole = self.areas.iter().sum::<f64>();
-                let slope = |index: usize| 2.0 * self.areas[index] / whole * (pressures[index] - wanted[index]);
+                let slope = |index: usize| 2.0 * self.areas[index] / whole * (pressures[index] - self.wanted[index]);
                 Vector::from_fn(pressures.len(), |index, _| slope(index))
             }
             PressureMeasure::OpenArea { pressure } => {
@@ -286,8 +284,9 @@ impl OuterFunction for PressureCost {
             &PressureMeasure::Norm { exponent, .. } => {
                 pressures.iter().zip(&self.weights).map(|(p, weight)| weight * p.max(0.0).powf(exponent)).sum()
             }
-            PressureMeasure::Deviation { wanted } => {
-                let terms = nodes().zip(wanted).map(|((pressure, area), wanted)| area * (pressure - wanted).powi(2));
+            PressureMeasure::Deviation { .. } => {
+                let terms =
+                    nodes().zip(&self.wanted).map(|((pressure, area), wanted)| area * (pressure - wanted).powi(2));
                 terms.sum::<f64>() / self.areas.iter().sum::<f64>()
             }
             PressureMeasure::OpenArea { pressure } => {
@@ -328,13 +327,6 @@ impl OuterFunction for PressureCost {
         let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)).component_mul(&nodes));
         centred.ger(-1.0, &relative, &gradient, 1.0);
         Some(weighted_gram(&centred, &weights))
-    }
-}
-
-fn norm_unit(exponent: f64, weight: NodeWeight) -> String {
-    match weight {
-        NodeWeight::Area => format!("MPa^{{{exponent}}}·mm^{{2}}"),
-        NodeWeight::Nodes => format!("MPa^{{{exponent}}}"),
     }
 }
 

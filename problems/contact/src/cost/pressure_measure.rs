@@ -1,6 +1,6 @@
 //! Measures of the contact pressures, and what is told of them.
 
-use serde::Serialize;
+use crate::cost::wanted_pressure::WantedPressure;
 
 /// What a contact node counts in a pressure norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -28,9 +28,8 @@ pub enum PressureMeasure {
     Peak,
     /// Σ A (σ − w)² / Σ A, MPa²: the mean squared deviation from a wanted pressure.
     Deviation {
-        /// w per contact node, MPa, in the order of
-        /// [`ContactBoundary::points`](crate::equilibrium::ContactBoundary::points).
-        wanted: Vec<f64>,
+        /// w, MPa.
+        wanted: WantedPressure,
     },
     /// Σ A max(1 − σ/σ₀, 0), mm²: the area that lacks contact pressure. A node counts with its whole area where it is
     /// open, with none of it from σ = σ₀ on. The least open area is the largest smoothed contact area Σ A min(σ/σ₀, 1).
@@ -40,15 +39,27 @@ pub enum PressureMeasure {
     },
 }
 
-/// Contact areas of a state, mm².
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ContactAreas {
-    /// The area of the closed nodes: Σ A over nodes that stick or slip.
-    pub closed: f64,
-    /// The smoothed contact area Σ A min(σ/σ₀, 1).
-    pub smoothed: f64,
-    /// The area of all contact nodes.
-    pub whole: f64,
+impl PressureMeasure {
+    /// Its name in scene files and reports.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Norm { .. } => "pressure-norm",
+            Self::Peak => "peak-pressure",
+            Self::Deviation { .. } => "pressure-deviation",
+            Self::OpenArea { .. } => "open-area",
+        }
+    }
+
+    /// The unit of its values, such as `MPa^{4}·mm^{2}`.
+    pub(super) fn unit(&self) -> String {
+        match self {
+            Self::Norm { exponent, weight: NodeWeight::Area } => format!("MPa^{{{exponent}}}·mm^{{2}}"),
+            Self::Norm { exponent, weight: NodeWeight::Nodes } => format!("MPa^{{{exponent}}}"),
+            Self::Peak => "MPa".into(),
+            Self::Deviation { .. } => "MPa^{2}".into(),
+            Self::OpenArea { .. } => "mm^{2}".into(),
+        }
+    }
 }
 
 /// A sum of powers of pressures as a pressure.

@@ -74,7 +74,7 @@ impl Region {
             let allowed = "no face where stresses are measured, which belong to whole cells";
             return Err(SceneError::out_of_range(format!("{place}.region.face"), format!("\"{face}\""), allowed));
         }
-        self.check(place, problem)?;
+        self.check(&format!("{place}.region"), problem)?;
         let positions = problem.start_positions();
         let slack = slack(&positions);
         let mut found = RegionCells { cells: vec![Vec::new(); positions.len()], volume: 0.0 };
@@ -119,26 +119,42 @@ impl Region {
         Ok(nodes)
     }
 
-    fn face_nodes(&self, place: &str, face: &str, problem: &ContactProblem) -> Result<Vec<Vec<u32>>, SceneError> {
+    /// The nodes of every facet of a face, by body; `place`: what messages call the region.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a body that the scene does not have, and for a volume or a face that no mesh has.
+    pub(super) fn face_of(
+        &self,
+        place: &str,
+        face: &str,
+        problem: &ContactProblem,
+    ) -> Result<Vec<Vec<Vec<u32>>>, SceneError> {
         self.check(place, problem)?;
-        let bodies = || problem.bodies.iter().enumerate().filter(|(_, body)| self.is_of(body));
-        let meshes: Vec<&Mesh> = bodies().map(|(_, body)| &*body.mesh).collect();
-        check_among(&format!("{place}.region.face"), face, &meshes, &[Kind::Faces])?;
+        let meshes = problem.bodies.iter().filter(|body| self.is_of(body)).map(|body| &*body.mesh);
+        check_among(&format!("{place}.face"), face, &meshes.collect::<Vec<_>>(), &[Kind::Faces])?;
+        let of_body = |body: &Body| {
+            let faces = body.mesh.faces().get(face).into_iter().flatten().filter(|_| self.is_of(body));
+            let own = faces.filter(|face| self.may_hold(body, face.cell as usize));
+            own.map(|face| body.mesh.face_nodes(*face).collect()).collect()
+        };
+        Ok(problem.bodies.iter().map(of_body).collect())
+    }
+
+    fn face_nodes(&self, place: &str, face: &str, problem: &ContactProblem) -> Result<Vec<Vec<u32>>, SceneError> {
+        let facets = self.face_of(&format!("{place}.region"), face, problem)?;
         let positions = problem.start_positions();
         let slack = slack(&positions);
         let mut found = vec![Vec::new(); positions.len()];
         let mut places = Vec::new();
-        for (number, body) in bodies() {
-            let faces = body.mesh.faces().get(face).into_iter().flatten();
-            for node in faces
-                .filter(|face| self.may_hold(body, face.cell as usize))
-                .flat_map(|face| body.mesh.face_nodes(*face))
-            {
-                let x = positions[number][node as usize];
-                places.push(x);
-                if self.surrounds(x, slack) {
-                    found[number].push(node);
-                }
+        for (number, node) in facets
+            .iter()
+            .enumerate()
+            .flat_map(|(number, facets)| facets.iter().flatten().map(move |&node| (number, node)))
+        {
+            let x = positions[number][node as usize];
+            places.push(x);
+            if self.surrounds(x, slack) {
+                found[number].push(node);
             }
         }
         match found.iter().all(Vec::is_empty) {
@@ -147,15 +163,15 @@ impl Region {
         }
     }
 
-    /// Checks body and volume.
+    /// Checks body and volume; `place`: what messages call the region.
     fn check(&self, place: &str, problem: &ContactProblem) -> Result<(), SceneError> {
         if let Some(body) = &self.body {
-            find(&format!("{place}.region.body"), body, problem.bodies.iter().map(|body| body.name.as_str()))?;
+            find(&format!("{place}.body"), body, problem.bodies.iter().map(|body| body.name.as_str()))?;
         }
         if let Some(volume) = &self.volume {
             let bodies = problem.bodies.iter().filter(|body| self.is_of(body));
             let meshes: Vec<&Mesh> = bodies.map(|body| &*body.mesh).collect();
-            check_among(&format!("{place}.region.volume"), volume, &meshes, &[Kind::Volumes])?;
+            check_among(&format!("{place}.volume"), volume, &meshes, &[Kind::Volumes])?;
         }
         Ok(())
     }

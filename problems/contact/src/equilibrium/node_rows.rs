@@ -40,6 +40,8 @@ pub(crate) const HELD: f64 = 1e-8;
 pub struct RowSensitivities {
     /// By the directions of the rows; empty for 0.
     pub directions: Vec<[f64; 3]>,
+    /// By the whole normal, where a function has more of it than the directions.
+    pub normal: [f64; 3],
     /// By the gap.
     pub gap: f64,
     /// By the area.
@@ -123,7 +125,7 @@ impl NodeRows {
         let gap = if point.is_tied { 0.0 } else { own.gap };
         let (by_directions, imposed) =
             (self.normal_sensitivity(&point.free, &own.directions), point.imposed(&self.weights));
-        let normal = std::array::from_fn(|axis| by_directions[axis] - gap * imposed[axis]);
+        let normal = std::array::from_fn(|axis| by_directions[axis] + own.normal[axis] - gap * imposed[axis]);
         let mut weights = own.weights.clone();
         weights.resize(point.sides.len(), 0.0);
         weights.iter_mut().zip(self.gap_slopes(point)).for_each(|(sum, slope)| *sum += gap * slope);

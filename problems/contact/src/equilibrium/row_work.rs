@@ -29,7 +29,7 @@ impl NodeValues {
     }
 
     /// Σ_sides weight · vector.
-    fn jump(&self, point: &ContactPoint, weights: &[f64]) -> [f64; 3] {
+    pub(crate) fn jump(&self, point: &ContactPoint, weights: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (side, weight) in point.sides.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             let own = self.at(side);
@@ -65,7 +65,8 @@ pub(crate) fn row_sensitivities(
             -point.rows().zip(&node.directions).map(term).sum::<f64>()
         };
         let weights = if point.sides.len() > 1 { point.sides.iter().map(of_side).collect() } else { Vec::new() };
-        RowSensitivities { directions: point.rows().map(of_row).collect(), gap, area: 0.0, weights }
+        let directions = point.rows().map(of_row).collect();
+        RowSensitivities { directions, gap, weights, ..RowSensitivities::default() }
     };
     boundary.points.iter().zip(&rows.nodes).map(of_node).collect()
 }

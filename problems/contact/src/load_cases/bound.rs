@@ -1,36 +1,89 @@
-//! A limit of one case as a constraint of the optimizer, where it is no function of the outputs.
+//! A quantity of one case on its mesh: a limit as a constraint of the optimizer, or what is told.
 
 use crate::contact_shape::unit_changes;
-use crate::cost::{
-    FieldCost, FieldMeasure, FieldPiece, Limit, LimitSide, LimitedQuantity, PressureCost, PressureMeasure, volume,
-    volume_gradient,
-};
+use crate::cost::{Limit, LimitSide, Quantity, Reported, ShapeFunction, StateCost, StatePiece, StateView};
 use crate::equilibrium::{ContactProblem, ContactState};
 use crate::error::SceneError;
 use crate::load_cases::{CaseStates, LoadCases};
-use nonsmooth::composite::OuterFunction;
-use nonsmooth::{ConstraintKind, Cost, CostGradient, OracleError, Vector};
+use nonsmooth::{ConstraintKind, OracleError, Vector};
 
 /// A limit in one case, on the mesh of that case.
 #[derive(Debug)]
 pub struct Bound {
     /// The limit, with its case.
     pub limit: Limit,
-    /// The number of the case; that of the first for the volume.
+    /// The number of the case; that of the first for functions of the shape.
     pub case: usize,
-    quantity: Quantity,
+    rated: Rated,
     kind: ConstraintKind,
 }
 
-/// What is bounded, on the mesh of the case.
+/// A report in one case, on the mesh of that case.
 #[derive(Debug)]
-enum Quantity {
-    /// The peak pressure, a function of the outputs.
-    PeakPressure,
-    LoadedArea(PressureCost),
-    Field(FieldCost),
-    /// The volume over this one, mm³.
-    Volume(f64),
+pub struct Told {
+    /// The report, with its case.
+    pub report: Reported,
+    /// As [`Bound::case`].
+    pub case: usize,
+    rated: Rated,
+}
+
+/// A quantity on the mesh of a case.
+#[derive(Debug)]
+enum Rated {
+    State(StateCost),
+    Shape(ShapeFunction),
+}
+
+impl Rated {
+    fn new(place: &str, quantity: &Quantity, problem: &ContactProblem) -> Result<Self, SceneError> {
+        if let Some(shape) = ShapeFunction::new(place, quantity, problem)? {
+            return Ok(Self::Shape(shape));
+        }
+        let field = || format!("{place}.quantity");
+        let refused = || SceneError::out_of_range(field(), quantity.name(), "a quantity of states or shapes");
+        Ok(Self::State(StateCost::new(place, quantity, problem)?.ok_or_else(refused)?))
+    }
+
+    fn needs_displacements(&self) -> bool {
+        matches!(self, Self::State(state) if state.needs_displacements())
+    }
+
+    fn value<S>(&self, problem: &ContactProblem, control: &Vector, state: &ContactState<S>) -> f64 {
+        match self {
+            Self::State(own) => own.value(problem, StateView::of(state)),
+            Self::Shape(own) => own.value(problem, control.as_slice()),
+        }
+    }
+}
+
+impl Told {
+    /// All reports of some cases with these names and problems.
+    ///
+    /// # Errors
+    /// As [`StateCost::new`]; [`SceneError::OutOfRange`] for a report of an unknown case.
+    pub fn all(reports: &[Reported], cases: &[(&str, &ContactProblem)]) -> Result<Vec<Self>, SceneError> {
+        let names: Vec<&str> = cases.iter().map(|(name, _)| *name).collect();
+        let mut all = Vec::new();
+        for (index, report) in reports.iter().enumerate() {
+            let place = format!("report[{index}]");
+            for (report, case) in report.in_cases(&place, &names)? {
+                let rated = Rated::new(&place, &report.quantity, cases[case].1)?;
+                all.push(Self { report, case, rated });
+            }
+        }
+        Ok(all)
+    }
+
+    /// Whether it depends on the displacements.
+    pub(crate) fn needs_displacements(&self) -> bool {
+        self.rated.needs_displacements()
+    }
+
+    /// The quantity at a state of its case.
+    pub(crate) fn value<S>(&self, problem: &ContactProblem, control: &Vector, state: &ContactState<S>) -> f64 {
+        self.rated.value(problem, control, state)
+    }
 }
 
 /// Value and gradient of a constraint, and further linearizations at the point.
@@ -45,7 +98,7 @@ impl Bound {
     /// pressures first, case by case.
     ///
     /// # Errors
-    /// As [`PressureCost::new`] and [`FieldCost::new`]; [`SceneError::OutOfRange`] for a limit of an unknown case, and
+    /// As [`StateCost::new`]; [`SceneError::OutOfRange`] for a limit of an unknown case, and
     /// for a bound that means nothing.
     pub fn all(limits: &[Limit], cases: &[(&str, &ContactProblem)]) -> Result<Vec<Self>, SceneError> {
         let names: Vec<&str> = cases.iter().map(|(name, _)| *name).collect();
@@ -55,23 +108,12 @@ impl Bound {
     }
 
     fn new(mut limit: Limit, case: usize, problem: &ContactProblem) -> Result<Self, SceneError> {
-        let start = || volume(problem, &problem.scene.start());
-        let quantity = match &limit.quantity {
-            LimitedQuantity::PeakPressure => Quantity::PeakPressure,
-            &LimitedQuantity::LoadedArea { pressure } => {
-                Quantity::LoadedArea(PressureCost::new(PressureMeasure::OpenArea { pressure }, problem)?)
-            }
-            LimitedQuantity::Field(measure) => Quantity::Field(FieldCost::named("limit", measure.clone(), problem)?),
-            LimitedQuantity::RelativeVolume => Quantity::Volume(start()),
-            LimitedQuantity::Volume => Quantity::Volume(1.0),
-        };
         let kind = limit.kind()?;
-        limit.typical = match &limit.quantity {
-            LimitedQuantity::Field(FieldMeasure::Displacement { .. }) => problem.typical_displacement(),
-            LimitedQuantity::Field(FieldMeasure::Compliance) => problem.load() * problem.typical_displacement(),
-            _ => 0.0,
-        };
-        Ok(Self { limit, case, quantity, kind })
+        let rated = Rated::new("limit", &limit.quantity, problem)?;
+        if let Rated::State(state) = &rated {
+            limit.typical = state.typical(problem);
+        }
+        Ok(Self { limit, case, rated, kind })
     }
 
     /// What it asks of the optimizer.
@@ -81,37 +123,30 @@ impl Bound {
 
     /// The constraint with its gradient where the shape alone decides it; `problem`: that of its case.
     pub fn of_shape(&self, problem: &ContactProblem, control: &Vector) -> Option<(f64, Vector)> {
-        let Quantity::Volume(unit) = self.quantity else { return None };
-        let value = self.limit.constraint(volume(problem, control.as_slice()) / unit);
-        Some((value, volume_gradient(problem, control.as_slice()) * (self.limit.sign() / unit)))
+        let Rated::Shape(shape) = &self.rated else { return None };
+        Some(self.linear(shape, problem, control))
+    }
+
+    fn linear(&self, shape: &ShapeFunction, problem: &ContactProblem, control: &Vector) -> (f64, Vector) {
+        let value = self.limit.constraint(shape.value(problem, control.as_slice()));
+        (value, shape.gradient(problem, control.as_slice()) * self.limit.sign())
     }
 
     /// Whether it depends on the displacements, and whether it has further linearizations then.
     pub(crate) fn fields(&self) -> [bool; 2] {
-        match &self.quantity {
-            Quantity::Field(cost) => [true, !cost.is_smooth() && self.has_pieces()],
-            _ => [false; 2],
-        }
+        [self.rated.needs_displacements(), self.pieces_of().is_some()]
     }
 
-    /// Whether pieces below the largest one are linearizations of the constraint: it is a maximum of them.
-    fn has_pieces(&self) -> bool {
-        let least =
-            matches!(self.limit.quantity, LimitedQuantity::Field(FieldMeasure::Displacement { least: true, .. }));
-        (self.limit.side == LimitSide::AtLeast) == least
+    /// The quantity where pieces below the largest one are linearizations of the constraint: it is a maximum of them.
+    fn pieces_of(&self) -> Option<&StateCost> {
+        let Rated::State(state) = &self.rated else { return None };
+        let least = matches!(self.limit.quantity, Quantity::Displacement { least: true, .. });
+        (state.has_pieces() && (self.limit.side == LimitSide::AtLeast) == least).then_some(state)
     }
 
     /// The limited quantity at a state of its case.
     pub(crate) fn value<S>(&self, problem: &ContactProblem, control: &Vector, state: &ContactState<S>) -> f64 {
-        match &self.quantity {
-            Quantity::PeakPressure => {
-                let pressures = state.rows.pressures(&state.forces.normal).into_iter();
-                pressures.fold(f64::NEG_INFINITY, f64::max)
-            }
-            Quantity::LoadedArea(open) => state.rows.area() - open.value_of(state),
-            Quantity::Field(cost) => Cost::value(cost, control, state),
-            Quantity::Volume(unit) => volume(problem, control.as_slice()) / unit,
-        }
+        self.rated.value(problem, control, state)
     }
 
     /// The constraint at the states of a shape.
@@ -125,48 +160,30 @@ impl Bound {
         states: &CaseStates,
     ) -> Result<Linearized, OracleError> {
         let (problem, state) = (cases.case(self.case).problem(), &states[self.case]);
-        if let Some((value, gradient)) = self.of_shape(problem, control) {
-            return Ok(Linearized { value, gradient, pieces: Vec::new() });
-        }
-        let value = self.limit.constraint(self.value(problem, control, state));
-        let gradient = match &self.quantity {
-            Quantity::Field(cost) => {
-                if let Some(found) = self.by_tangents(cost, cases, states) {
-                    return Ok(found);
-                }
-                cases.gradient(self.case, states, &Cost::gradient(cost, control, state))?
+        let own = match &self.rated {
+            Rated::State(own) => own,
+            Rated::Shape(shape) => {
+                let (value, gradient) = self.linear(shape, problem, control);
+                return Ok(Linearized { value, gradient, pieces: Vec::new() });
             }
-            Quantity::LoadedArea(open) => {
-                let outputs = open.outputs(false);
-                let [forces, areas] = [&state.forces.normal, &state.rows.areas()];
-                let weights = OuterFunction::subgradient(open, &outputs.values(forces, areas).into());
-                let [by_force, by_area] = outputs.pull_back(forces, areas, weights.as_slice());
-                let by_area: Vec<f64> = by_area.iter().map(|slope| 1.0 - slope).collect();
-                let mut dual = Vector::zeros(cases.dual_count(self.case));
-                problem
-                    .boundary
-                    .contact_points()
-                    .iter()
-                    .zip(by_force)
-                    .for_each(|(point, slope)| dual[point.start] = -slope);
-                let positions = problem.pull_back_areas(&state.rows, &by_area);
-                let explicit = Vector::from_vec(problem.map.pull_back(&positions));
-                cases.gradient(self.case, states, &CostGradient { control: explicit, state: dual })?
-            }
-            // A function of the outputs, and one of the shape.
-            Quantity::PeakPressure | Quantity::Volume(_) => Vector::zeros(control.len()),
         };
+        if let Some(found) = self.by_tangents(cases, states) {
+            return Ok(found);
+        }
+        let at = StateView::of(state);
+        let value = self.limit.constraint(own.value(problem, at));
+        let gradient = cases.gradient(self.case, states, &own.gradient(problem, at).pulled(problem))?;
         Ok(Linearized { value, gradient: gradient * self.limit.sign(), pieces: Vec::new() })
     }
 
     /// By forward derivatives of the displacements: all points near the extreme one. None where these are not known.
-    fn by_tangents(&self, cost: &FieldCost, cases: &LoadCases, states: &CaseStates) -> Option<Linearized> {
-        let tangents = states.tangents(self.case).filter(|_| self.has_pieces())?;
-        let map = &cases.case(self.case).problem().map;
+    fn by_tangents(&self, cases: &LoadCases, states: &CaseStates) -> Option<Linearized> {
+        let (own, tangents) = (self.pieces_of()?, states.tangents(self.case)?);
+        let problem = cases.case(self.case).problem();
         let changes = unit_changes(states.control.len());
-        let velocities = map.velocities(&changes);
-        let pieces = cost.pieces_of(states[self.case].bodies.as_deref()?);
-        let row = |piece: &FieldPiece| Vector::from_vec(piece.row(tangents, &velocities)) * self.limit.sign();
+        let velocities = problem.map.velocities(&changes);
+        let pieces = own.pieces(problem, StateView::of(&states[self.case]));
+        let row = |piece: &StatePiece| Vector::from_vec(piece.row(tangents, &velocities)) * self.limit.sign();
         let mut linear = pieces.iter().map(|piece| (self.limit.constraint(piece.value), row(piece)));
         let (value, gradient) = linear.next()?;
         Some(Linearized { value, gradient, pieces: linear.collect() })

@@ -1,7 +1,7 @@
 //! One load case, and how several are rated together.
 
 use crate::contact_shape::ContactShape;
-use crate::cost::Measure;
+use crate::cost::Quantity;
 use crate::equilibrium::ContactProblem;
 use nonsmooth::OracleError;
 use serde::{Deserialize, Serialize};
@@ -28,8 +28,8 @@ pub struct LoadCase {
     pub weight: f64,
     /// The map from controls to states under its loads.
     pub shape: ContactShape,
-    /// What its states are rated by: the same kind of measure for all cases.
-    pub measure: Measure,
+    /// What is minimised in it: the same for all cases.
+    pub quantity: Quantity,
 }
 
 /// A case without its solver.
@@ -39,8 +39,8 @@ pub struct WeightedCase<'a> {
     pub name: &'a str,
     /// As [`LoadCase::weight`].
     pub weight: f64,
-    /// As [`LoadCase::measure`].
-    pub measure: Measure,
+    /// As [`LoadCase::quantity`].
+    pub quantity: Quantity,
     /// The discrete problem of the case.
     pub problem: &'a ContactProblem,
 }

@@ -1,6 +1,7 @@
 //! The objective of all cases as a function of their outputs, with the limits that are functions of the pressures.
 
-use crate::cost::{FieldCost, Limit, LimitSide, LimitedQuantity, Measure, PressureCost, PressureOutputs};
+use crate::cost::{Limit, LimitSide, PressureCost, PressureOutputs, Quantity, ShapeFunction, StateCost};
+use crate::equilibrium::ContactProblem;
 use crate::error::SceneError;
 use crate::load_cases::{Over, WeightedCase};
 use crate::shape::lattice_bending_rows;
@@ -18,10 +19,30 @@ const NEAR_PEAK: f64 = 0.5;
 pub enum CaseCost {
     /// Of the contact pressures, normalised where it may lie outside the range of doubles.
     Pressure(PressureCost),
-    /// A function of the displacements.
-    Field(FieldCost),
-    /// The volume of the lower body.
-    Volume,
+    /// Another function of the state, an output of its own.
+    State(StateCost),
+    /// A function of the shape, the same in all cases.
+    Shape(ShapeFunction),
+}
+
+impl CaseCost {
+    /// A quantity as an objective on the mesh of a problem.
+    fn new(quantity: &Quantity, problem: &ContactProblem) -> Result<Self, SceneError> {
+        const PLACE: &str = "objective";
+        quantity.check_differentiable("objective.quantity")?;
+        if let Quantity::Pressure(measure) = quantity {
+            return Ok(Self::Pressure(PressureCost::new(measure.clone(), problem)?));
+        }
+        if let Some(shape) = ShapeFunction::new(PLACE, quantity, problem)? {
+            return Ok(Self::Shape(shape));
+        }
+        match StateCost::new(PLACE, quantity, problem)? {
+            Some(state) => Ok(Self::State(state)),
+            None => {
+                Err(SceneError::out_of_range("objective.quantity", quantity.name(), "a quantity of states or shapes"))
+            }
+        }
+    }
 }
 
 /// A case among the outputs.
@@ -42,14 +63,16 @@ struct PeakLimit {
     limit: Limit,
 }
 
-/// h of the outputs of all cases: max w_k J_k or Σ w_k J_k, or the volume; with the peak pressures that are limited as
+/// h of the outputs of all cases: max w_k J_k or Σ w_k J_k, or a function of the shape; with the peak pressures that are limited as
 /// its nonlinear constraints.
 #[derive(Debug, Clone)]
 pub struct CasesCost {
     over: Over,
     parts: Vec<Part>,
-    /// The output that is the volume, where it is the objective.
-    volume: Option<usize>,
+    /// What is minimised.
+    quantity: Quantity,
+    /// The output that is a function of the shape, where that is the objective.
+    of_shape: Option<usize>,
     limits: Vec<PeakLimit>,
     kinds: Vec<ConstraintKind>,
     /// The first of the outputs r = √w R α whose squares add the bending of the surface, and √w R.
@@ -60,13 +83,13 @@ impl CasesCost {
     /// The cost of some cases; of the limits, it takes those of the peak pressure. A limit of no case holds for all.
     ///
     /// # Errors
-    /// [`SceneError`] as [`PressureCost::new`] and [`FieldCost::new`]; [`SceneError::OutOfRange`] for weights and
-    /// bounds that are not finite and > 0.
+    /// [`SceneError`] as [`PressureCost::new`] and [`StateCost::new`]; [`SceneError::OutOfRange`] for weights and bounds
+    /// that are not finite and > 0, for a quantity that jumps, and without a case.
     pub fn new(cases: &[WeightedCase<'_>], over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
         let costs = normalised(cases)?;
         let names: Vec<&str> = cases.iter().map(|case| case.name).collect();
         let limits = Limit::of_cases(limits, &names)?.into_iter();
-        let peaks = limits.filter(|(limit, _)| limit.quantity == LimitedQuantity::PeakPressure);
+        let peaks = limits.filter(|(limit, _)| limit.quantity.is_peak());
         let peak = |(limit, part): (Limit, usize)| {
             limit.kind()?;
             Ok(PeakLimit { part, limit })
@@ -82,10 +105,14 @@ impl CasesCost {
             parts.push(part);
         }
         let fairness = fairness(cases)?;
-        let is_volume = parts.iter().any(|part| matches!(part.cost, CaseCost::Volume));
+        let of_shape = parts.iter().any(|part| matches!(part.cost, CaseCost::Shape(_)));
         let kinds = vec![ConstraintKind::Nonsmooth; peaks.len()];
-        let fairness = fairness.map(|rows| (next + usize::from(is_volume), rows));
-        Ok(Self { over, parts, volume: is_volume.then_some(next), limits: peaks, kinds, fairness })
+        let fairness = fairness.map(|rows| (next + usize::from(of_shape), rows));
+        let Some(first) = cases.first() else {
+            return Err(SceneError::out_of_range("case", "none", "at least one load case"));
+        };
+        let (quantity, of_shape) = (first.quantity.clone(), of_shape.then_some(next));
+        Ok(Self { over, parts, quantity, of_shape, limits: peaks, kinds, fairness })
     }
 
     /// The outputs of the pressures of a case; none where neither objective nor limits depend on them.
@@ -98,9 +125,17 @@ impl CasesCost {
         &self.parts[case].cost
     }
 
-    /// Whether the volume is minimised.
-    pub(super) fn is_volume(&self) -> bool {
-        self.volume.is_some()
+    /// What is minimised.
+    pub fn quantity(&self) -> &Quantity {
+        &self.quantity
+    }
+
+    /// The function of the shape that is minimised, if one is.
+    pub(super) fn of_shape(&self) -> Option<&ShapeFunction> {
+        match &self.parts.first()?.cost {
+            CaseCost::Shape(shape) => Some(shape),
+            CaseCost::Pressure(_) | CaseCost::State(_) => None,
+        }
     }
 
     /// √w R of the bending w|Rα|² that is added to Θ, if it is.
@@ -161,10 +196,10 @@ impl CasesCost {
     }
 
     fn value_of(&self, part: &Part, outputs: &Vector) -> f64 {
-        match (&part.cost, self.volume) {
+        match (&part.cost, self.of_shape) {
             (CaseCost::Pressure(cost), _) => cost.value(&slice(outputs, &part.own)),
-            (CaseCost::Field(_), _) => outputs[part.own.start],
-            (CaseCost::Volume, place) => place.map_or(f64::NAN, |place| outputs[place]),
+            (CaseCost::State(_), _) => outputs[part.own.start],
+            (CaseCost::Shape(_), place) => place.map_or(f64::NAN, |place| outputs[place]),
         }
     }
 
@@ -174,7 +209,7 @@ impl CasesCost {
         for (_, part) in self.parts.iter().enumerate().filter(|(index, _)| counts(*index)) {
             let own = match &part.cost {
                 CaseCost::Pressure(cost) => cost.subgradient(&slice(outputs, &part.own)) * part.weight,
-                CaseCost::Field(_) | CaseCost::Volume => Vector::from_element(part.own.len(), part.weight),
+                CaseCost::State(_) | CaseCost::Shape(_) => Vector::from_element(part.own.len(), part.weight),
             };
             gradient.rows_mut(part.own.start, part.own.len()).copy_from(&own);
         }
@@ -212,12 +247,12 @@ impl Part {
                 let end = first + outputs.count(nodes);
                 (at(nodes), end - nodes..end, Some(outputs))
             }
-            CaseCost::Field(_) if is_limited => {
+            CaseCost::State(_) if is_limited => {
                 (first + nodes..first + nodes + 1, at(nodes), Some(PressureOutputs::default()))
             }
-            CaseCost::Field(_) => (at(1), at(0), None),
-            CaseCost::Volume if is_limited => (at(0), at(nodes), Some(PressureOutputs::default())),
-            CaseCost::Volume => (at(0), at(0), None),
+            CaseCost::State(_) => (at(1), at(0), None),
+            CaseCost::Shape(_) if is_limited => (at(0), at(nodes), Some(PressureOutputs::default())),
+            CaseCost::Shape(_) => (at(0), at(0), None),
         };
         Self { weight, cost, own, pressures, outputs }
     }
@@ -249,17 +284,11 @@ fn fairness(cases: &[WeightedCase<'_>]) -> Result<Option<Matrix>, SceneError> {
 
 /// The costs of all cases; norms are roots in all cases if they have to be in one.
 fn normalised(cases: &[WeightedCase<'_>]) -> Result<Vec<CaseCost>, SceneError> {
-    let cost = |case: &WeightedCase<'_>| {
-        Ok(match &case.measure {
-            Measure::Pressure(measure) => CaseCost::Pressure(PressureCost::new(measure.clone(), case.problem)?),
-            Measure::Field(measure) => CaseCost::Field(FieldCost::new(measure.clone(), case.problem)?),
-            Measure::Volume => CaseCost::Volume,
-        })
-    };
+    let cost = |case: &WeightedCase<'_>| CaseCost::new(&case.quantity, case.problem);
     let costs = cases.iter().map(cost).collect::<Result<Vec<_>, SceneError>>()?;
     let leaves = |(cost, case): (&CaseCost, &WeightedCase<'_>)| match cost {
         CaseCost::Pressure(cost) => cost.may_leave_doubles(case.problem),
-        CaseCost::Field(_) | CaseCost::Volume => false,
+        CaseCost::State(_) | CaseCost::Shape(_) => false,
     };
     if !costs.iter().zip(cases).any(leaves) {
         return Ok(costs);
@@ -278,7 +307,7 @@ fn slice(outputs: &Vector, range: &Range<usize>) -> Vector {
 impl OuterFunction for CasesCost {
     fn value(&self, outputs: &Vector) -> f64 {
         let bending = self.bending(outputs).0;
-        if let Some(place) = self.volume {
+        if let Some(place) = self.of_shape {
             return outputs[place] + bending;
         }
         let values = self.weighted(outputs);
@@ -294,7 +323,7 @@ impl OuterFunction for CasesCost {
 
     fn subgradient(&self, outputs: &Vector) -> Vector {
         let mut bending = self.bending(outputs).1;
-        if let Some(place) = self.volume {
+        if let Some(place) = self.of_shape {
             bending[place] = 1.0;
             return bending;
         }
@@ -321,7 +350,7 @@ impl OuterFunction for CasesCost {
 
     /// The weighted measures of the cases, where the worst of several counts and all are smooth.
     fn parts(&self, outputs: &Vector) -> Vec<OuterPart> {
-        if self.over == Over::Sum || self.parts.len() == 1 || self.volume.is_some() {
+        if self.over == Over::Sum || self.parts.len() == 1 || self.of_shape.is_some() {
             return vec![];
         }
         let (bending, slope) = self.bending(outputs);

@@ -1,7 +1,7 @@
 //! Controls ↦ the states of all cases, as one state problem of the framework.
 
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
-use crate::cost::{FieldCost, volume, volume_gradient, volume_slope};
+use crate::cost::{ShapeFunction, StateCost, StateView};
 use crate::equilibrium::TangentsOf;
 use crate::load_cases::case::named;
 use crate::load_cases::threads::on_all;
@@ -14,12 +14,13 @@ use nonsmooth::{
 use std::ops::Range;
 
 /// The control-to-states map of some cases that share their shape. The dual of its states is that of the cases, one
-/// after the other ([`crate::contact_shape`]); so are its outputs, after which the volume of the lower body (mm³)
-/// follows where it is the objective, and the rows of its bending where that counts.
+/// after the other ([`crate::contact_shape`]); so are its outputs, after which the function of the shape follows that is
+/// the objective, and the rows of its bending where that counts.
 #[derive(Debug)]
 pub struct LoadCases {
     cases: Vec<OneCase>,
-    with_volume: bool,
+    /// A function of the shape that follows as an output.
+    of_shape: Option<ShapeFunction>,
     /// Linear functions of the controls that follow as outputs.
     fairness: Option<Matrix>,
 }
@@ -32,7 +33,7 @@ struct OneCase {
     /// Whether functions of the pressures are outputs.
     with_pressures: bool,
     /// Whether the measure is an output of its own, after the pressures.
-    field: Option<FieldCost>,
+    field: Option<StateCost>,
     /// Whether forward derivatives of the displacements are wanted with the Jacobian.
     with_tangents: bool,
 }
@@ -40,8 +41,8 @@ struct OneCase {
 impl OneCase {
     fn outputs(&self, state: &ContactState) -> Vec<f64> {
         let mut outputs = if self.with_pressures { self.shape.outputs(state).as_slice().to_vec() } else { Vec::new() };
-        let bodies = state.bodies.as_deref().unwrap_or_default();
-        outputs.extend(self.field.iter().map(|field| field.value_of(bodies)));
+        let value = |field: &StateCost| field.value(self.shape.problem(), StateView::of(state));
+        outputs.extend(self.field.iter().map(value));
         outputs
     }
 }
@@ -53,16 +54,17 @@ impl LoadCases {
         let one = |(index, LoadCase { name, shape, .. }): (usize, LoadCase)| {
             let (pressures, [in_limits, with_tangents]) = (cost.pressures(index), fields[index]);
             let field = match cost.case(index) {
-                CaseCost::Field(field) => Some(field.clone()),
-                CaseCost::Pressure(_) | CaseCost::Volume => None,
+                CaseCost::State(state) => Some(state.clone()),
+                CaseCost::Pressure(_) | CaseCost::Shape(_) => None,
             };
             let with_pressures = pressures.is_some();
             let shape = shape.with_outputs(pressures.unwrap_or_default());
-            let shape = if field.is_some() || in_limits { shape.with_displacements() } else { shape };
+            let needed = in_limits || field.as_ref().is_some_and(StateCost::needs_displacements);
+            let shape = if needed { shape.with_displacements() } else { shape };
             OneCase { name, shape, with_pressures, field, with_tangents }
         };
-        let (with_volume, fairness) = (cost.is_volume(), cost.fairness().cloned());
-        Self { cases: cases.into_iter().enumerate().map(one).collect(), with_volume, fairness }
+        let (of_shape, fairness) = (cost.of_shape().cloned(), cost.fairness().cloned());
+        Self { cases: cases.into_iter().enumerate().map(one).collect(), of_shape, fairness }
     }
 
     /// Number of different cases.
@@ -132,9 +134,11 @@ impl LoadCases {
             rows += own.state;
         }
         if let (Some(field), Some(&weight)) = (&case.field, weights.last()) {
-            let CostGradient { control, state } = nonsmooth::Cost::gradient(field, control, state);
+            let problem = case.shape.problem();
+            let CostGradient { control, state } = field.gradient(problem, StateView::of(state)).pulled(problem);
             sum.control += control * weight;
-            sum.state += state * weight;
+            let mut own = sum.state.rows_mut(0, state.len());
+            own += state * weight;
         }
         sum
     }
@@ -209,12 +213,12 @@ impl LoadCases {
                 let own = Vector::from_column_slice(&own[..pressures]);
                 add(&case.shape.output_position_gradient(state, &own), 1.0);
             }
-            if let (Some(field), Some(bodies)) = (&case.field, &state.bodies) {
-                add(&field.gradient_of(bodies).positions, own[pressures]);
+            if let Some(field) = &case.field {
+                add(&field.gradient(case.shape.problem(), StateView::of(state)).positions, own[pressures]);
             }
         }
-        if self.with_volume {
-            add(&volume_slope(problem, control.as_slice()), weights[first]);
+        if let Some(shape) = &self.of_shape {
+            add(&shape.slope(problem, control.as_slice()), weights[first]);
         }
         Ok(sum)
     }
@@ -291,9 +295,8 @@ impl Coderivative for LoadCases {
 impl OutputJacobian for LoadCases {
     fn outputs(&self, states: &Self::State) -> Vector {
         let mut outputs: Vec<f64> = (0..self.cases.len()).flat_map(|index| states.outputs(index)).copied().collect();
-        if self.with_volume {
-            outputs.push(volume(self.cases[0].shape.problem(), states.control.as_slice()));
-        }
+        let value = |shape: &ShapeFunction| shape.value(self.cases[0].shape.problem(), states.control.as_slice());
+        outputs.extend(self.of_shape.iter().map(value));
         outputs.extend(self.fairness.iter().flat_map(|rows| (rows * &states.control).as_slice().to_vec()));
         Vector::from_vec(outputs)
     }
@@ -307,8 +310,8 @@ impl OutputJacobian for LoadCases {
             duals.extend_from_slice(own.state.as_slice());
             first += count;
         }
-        if self.with_volume {
-            explicit += volume_gradient(self.cases[0].shape.problem(), control.as_slice()) * weights[first];
+        if let Some(shape) = &self.of_shape {
+            explicit += shape.gradient(self.cases[0].shape.problem(), control.as_slice()) * weights[first];
             first += 1;
         }
         if let Some(rows) = &self.fairness {
@@ -326,11 +329,11 @@ impl OutputJacobian for LoadCases {
         self.check(control)?;
         let mut parts =
             self.on_all(0..self.cases.len(), |index| self.linearize_case(index, control, states, accuracy))?;
-        if self.with_volume {
+        if let Some(shape) = &self.of_shape {
             let problem = self.cases[0].shape.problem();
-            let outputs = Vector::from_element(1, volume(problem, control.as_slice()));
-            let jacobian =
-                Matrix::from_row_slice(1, control.len(), volume_gradient(problem, control.as_slice()).as_slice());
+            let outputs = Vector::from_element(1, shape.value(problem, control.as_slice()));
+            let slope = shape.gradient(problem, control.as_slice());
+            let jacobian = Matrix::from_row_slice(1, control.len(), slope.as_slice());
             parts.push(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None });
         }
         if let Some(rows) = &self.fairness {

@@ -14,7 +14,7 @@ mod map;
 mod states;
 mod threads;
 
-pub use bound::Bound;
+pub use bound::{Bound, Told};
 pub use case::{CaseFailed, LoadCase, Over, WeightedCase};
 pub use cost::{CaseCost, CasesCost};
 pub use map::LoadCases;

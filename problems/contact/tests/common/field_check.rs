@@ -4,10 +4,10 @@
 #![allow(dead_code, reason = "either binary uses a part of it")]
 
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
-use contact::cost::{FieldCost, FieldMeasure, FieldPiece};
+use contact::cost::{Quantity, StateCost, StateGradient, StatePiece, StateView};
 use contact::equilibrium::TangentsOf;
 use contact::scene::Scene;
-use nonsmooth::{Accuracy, Coderivative, Cost, StateSolver, Vector};
+use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 
 /// Shapes per scene and path.
 pub const SHAPES: u64 = 20;
@@ -37,18 +37,14 @@ fn unit_changes(count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|k| (0..count).map(|i| f64::from(u8::from(i == k))).collect()).collect()
 }
 
-/// The gradient of a piece by the controls, by an adjoint.
-fn by_adjoint(shape: &ContactShape, at: &Vector, state: &ContactState, piece: &FieldPiece) -> Vector {
-    let problem = shape.problem();
-    let gradient = piece.gradient(problem.map.node_count());
-    let mut dual = vec![0.0; problem.boundary.row_count];
-    dual.extend(gradient.displacements);
-    let explicit = Vector::from_vec(problem.map.pull_back(&gradient.positions));
-    explicit + shape.coderivative(at, state, &Vector::from_vec(dual)).unwrap().element
+/// Derivatives of a function of a state by the controls, by an adjoint.
+fn by_adjoint(shape: &ContactShape, at: &Vector, state: &ContactState, gradient: StateGradient) -> Vector {
+    let gradient = gradient.pulled(shape.problem());
+    gradient.control + shape.coderivative(at, state, &gradient.state).unwrap().element
 }
 
 /// Distance of the extreme value from the second one over the largest of both.
-fn distance_of_pieces(pieces: &[FieldPiece]) -> f64 {
+fn distance_of_pieces(pieces: &[StatePiece]) -> f64 {
     match pieces {
         [first, second, ..] => (first.value - second.value).abs() / first.value.abs().max(second.value.abs()),
         _ => f64::INFINITY,
@@ -60,41 +56,43 @@ fn distance_of_pieces(pieces: &[FieldPiece]) -> f64 {
 pub fn check(
     scene: &Scene,
     kind: SolverKind,
-    measures: &[FieldMeasure],
+    measures: &[Quantity],
     length: f64,
     case: impl Fn(u64) -> [Vector; 2],
 ) -> Vec<Tally> {
     let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
-    let costs: Vec<FieldCost> =
-        measures.iter().map(|measure| FieldCost::new(measure.clone(), shape.problem()).unwrap()).collect();
+    let costs: Vec<StateCost> =
+        measures.iter().map(|own| StateCost::new("limit", own, shape.problem()).unwrap().unwrap()).collect();
+    let problem = shape.problem();
     let mut tallies = vec![Tally::default(); costs.len()];
     for seed in 0..SHAPES {
         let [at, direction] = case(seed);
         let solve = |at: &Vector| shape.solve(at, None, Accuracy::TIGHTEST).unwrap();
         let state = solve(&at);
-        let bodies = state.bodies.as_deref().unwrap();
+        let view = StateView::of(&state);
         let changes = unit_changes(at.len());
         let tangents = shape.contact_solver().tangents(&state.solution, &changes, TangentsOf::Displacements, 0.0);
         let tangents = tangents.unwrap();
         let velocities = shape.problem().map.velocities(&changes);
         let pairs = STEPS.map(|step| [1.0, -1.0].map(|way| (step, solve(&(&at + &direction * (way * step * length))))));
         for ((cost, measure), tally) in costs.iter().zip(measures).zip(&mut tallies) {
-            let pieces = cost.pieces_of(bodies);
+            let pieces = cost.pieces(problem, view);
             tally.pieces = tally.pieces.max(pieces.len());
-            assert_eq!(pieces[0].value, cost.value_of(bodies));
-            assert!(pieces.len() == 1 || !cost.is_smooth());
-            let gradient = cost.gradient(&at, &state);
-            let gradient = gradient.control + shape.coderivative(&at, &state, &gradient.state).unwrap().element;
-            let last = by_adjoint(&shape, &at, &state, &pieces[pieces.len() - 1]);
-            for (piece, gradient) in [(&pieces[0], &gradient), (&pieces[pieces.len() - 1], &last)] {
-                let row = Vector::from_vec(piece.row(&tangents, &velocities));
-                let error = (row - gradient).norm() / gradient.norm();
-                tally.errors[1] = tally.errors[1].max(error);
-                assert!(
-                    error < OF_ROWS,
-                    "{measure:?}, {kind:?}, shape {seed}: a row is off by {error:.1e}; {piece:?}, slope {:.1e}",
-                    gradient.norm()
-                );
+            let gradient = by_adjoint(&shape, &at, &state, cost.gradient(problem, view));
+            assert_eq!(pieces.is_empty(), !cost.has_pieces());
+            if let (Some(first), Some(last)) = (pieces.first(), pieces.last()) {
+                assert!((first.value - cost.value(problem, view)).abs() <= 1e-12 * first.value.abs());
+                let of_last = by_adjoint(&shape, &at, &state, last.gradient(problem));
+                for (piece, gradient) in [(first, &gradient), (last, &of_last)] {
+                    let row = Vector::from_vec(piece.row(&tangents, &velocities));
+                    let error = (row - gradient).norm() / gradient.norm();
+                    tally.errors[1] = tally.errors[1].max(error);
+                    let slope = gradient.norm();
+                    assert!(
+                        error < OF_ROWS,
+                        "{measure:?}, {kind:?}, shape {seed}: {error:.1e} of {slope:.1e}; {piece:?}"
+                    );
+                }
             }
             let near = state.forces.kink.smallest_margin.min(distance_of_pieces(&pieces));
             if near < NEAR_KINK {
@@ -103,7 +101,7 @@ pub fn check(
             }
             let (product, size) = (gradient.dot(&direction), gradient.norm() * direction.norm());
             let error = |[ahead, behind]: &[(f64, ContactState); 2]| {
-                let values = [ahead, behind].map(|(_, state)| cost.value_of(state.bodies.as_deref().unwrap()));
+                let values = [ahead, behind].map(|(_, state)| cost.value(problem, StateView::of(state)));
                 ((values[0] - values[1]) / (2.0 * ahead.0 * length) - product).abs() / size
             };
             let error = pairs.iter().map(error).fold(f64::INFINITY, f64::min);
@@ -116,7 +114,7 @@ pub fn check(
 }
 
 /// Prints tallies of measures, and asserts that few shapes were left out.
-pub fn conclude(name: &str, measures: &[FieldMeasure], tallies: &[Tally]) {
+pub fn conclude(name: &str, measures: &[Quantity], tallies: &[Tally]) {
     for (measure, tally) in measures.iter().zip(tallies) {
         let Tally { checked, skipped, pieces, errors } = tally;
         println!(

@@ -2,7 +2,7 @@
 
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, Solver};
-use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity, Region};
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ValueError};
 use contact::scene::{Scene, hertz, signorini};
@@ -17,14 +17,14 @@ type Way = Option<(PreconditionerKind, DualMethod)>;
 const DIRICHLET: Way = Some((PreconditionerKind::Dirichlet, DualMethod::Newton(Recycling::On)));
 
 /// Rounding of the reference, relative to it. Displacements of whole bodies cost a digit more than forces.
-fn rounding(measure: &Measure) -> f64 {
+fn rounding(measure: &Quantity) -> f64 {
     match measure {
-        Measure::Pressure(_) => 1e-13,
-        Measure::Field(_) | Measure::Volume => 4e-12,
+        Quantity::Pressure(_) => 1e-13,
+        _ => 4e-12,
     }
 }
 
-fn objective(scene: &Scene, way: Way, measure: &Measure) -> ContactObjective {
+fn objective(scene: &Scene, way: Way, measure: &Quantity) -> ContactObjective {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
     let solver = match way {
         Some((preconditioner, method)) => {
@@ -48,7 +48,7 @@ fn value(objective: &ContactObjective, control: &Vector, accuracy: Accuracy) -> 
 fn check(
     scene: &Scene,
     control: &Vector,
-    measure: &Measure,
+    measure: &Quantity,
     solvers: &[Way],
     tolerances: &[f64],
 ) -> Result<(), TestCaseError> {
@@ -81,7 +81,7 @@ fn check_pressures(scene: &Scene, control: &Vector) -> Result<(), TestCaseError>
         Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations)),
         None,
     ];
-    let norm = Measure::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes });
+    let norm = Quantity::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes });
     check(scene, control, &norm, &solvers, &[1e-2, 1e-4, 1e-7, 1e-10])
 }
 
@@ -89,7 +89,7 @@ fn check_pressures(scene: &Scene, control: &Vector) -> Result<(), TestCaseError>
 fn check_fields(scene: &Scene, control: &Vector) -> Result<(), TestCaseError> {
     let all = Region::WHOLE;
     let solvers = [DIRICHLET, Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations))];
-    let stress = Measure::Field(FieldMeasure::StressNorm { region: all, exponent: 8.0 });
+    let stress = Quantity::StressNorm { region: all, exponent: 8.0 };
     check(scene, control, &stress, &solvers, &[1e-4])?;
     // At coarser states the remainder can exceed what the bound allows for; docs/method.md (5.3).
     for solvers in [&solvers[..], &[None]] {

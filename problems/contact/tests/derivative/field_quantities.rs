@@ -3,7 +3,7 @@
 use crate::common::start_height;
 use crate::field_check::{check, conclude};
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldCost, FieldMeasure, Region};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity, Region, StateCost};
 use contact::equilibrium::TangentsOf;
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
@@ -15,7 +15,7 @@ fn face(body: &str, name: &str) -> Region {
     Region { body: Some(body.into()), face: Some(name.into()), ..Region::WHOLE }
 }
 
-fn measures(scene: &Scene) -> Vec<FieldMeasure> {
+fn measures(scene: &Scene) -> Vec<Quantity> {
     let height = start_height(scene);
     // Away from the supports, and from nodes that stick, where displacements are 0 whatever the shape.
     let inner = Region {
@@ -25,22 +25,36 @@ fn measures(scene: &Scene) -> Vec<FieldMeasure> {
         ..Region::WHOLE
     };
     let above = Region { lower: [0.2 * height, 0.2 * height, 0.3 * height], ..Region::WHOLE };
-    let displacement = |region, component, least| FieldMeasure::Displacement { region, component, least };
+    let displacement = |region, axis, least| Quantity::Displacement { region, relative_to: None, axis, least };
     let mut measures = vec![
-        FieldMeasure::PeakStress { region: Region::WHOLE, without_held: true },
-        FieldMeasure::PeakStress {
-            region: Region { body: Some("lower".into()), ..above.clone() },
-            without_held: false,
-        },
+        Quantity::Stress { region: Region::WHOLE, without_held: true },
+        Quantity::Stress { region: Region { body: Some("lower".into()), ..above.clone() }, without_held: false },
         displacement(face("lower", "top"), Some(2), false),
         displacement(face("lower", "x1-max"), Some(0), false),
         displacement(inner, Some(0), true),
         displacement(above, None, false),
-        FieldMeasure::StressNorm { region: Region::WHOLE, exponent: 8.0 },
-        FieldMeasure::Compliance,
+        Quantity::StressNorm { region: Region::WHOLE, exponent: 8.0 },
+        Quantity::Compliance,
+        Quantity::Displacement {
+            region: face("lower", "x1-max"),
+            relative_to: Some(face("lower", "bottom")),
+            axis: None,
+            least: false,
+        },
+        Quantity::ContactMoment { contact: Some(0), axis: Some(0), about: [height, 2.0, 3.0] },
+        Quantity::Pressure(PressureMeasure::Norm { exponent: 3.0, weight: NodeWeight::Area }),
+        Quantity::Slip { contact: Some(0) },
     ];
+    if scene.has_friction() {
+        measures.push(Quantity::FrictionWork { contact: None });
+        // Without friction, loads determine these.
+        measures.push(Quantity::Reaction { region: face("lower", "x1-min"), axis: Some(0) });
+        measures.push(Quantity::ContactForce { contact: Some(0), axis: Some(0) });
+    }
     if scene.bodies.len() > 1 {
         measures.push(displacement(face("upper", "bottom"), Some(1), true));
+    } else {
+        measures.push(Quantity::LoadedArea { pressure: 2000.0 });
     }
     measures
 }
@@ -81,20 +95,20 @@ fn quantities_of_two_bodies_with_friction() {
 }
 
 /// The message with which a measure is refused.
-fn refused(measure: FieldMeasure) -> String {
+fn refused(measure: Quantity) -> String {
     let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
     let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
-    FieldCost::named("limits[2]", measure, shape.problem()).unwrap_err().to_string()
+    StateCost::new("limits[2]", &measure, shape.problem()).unwrap_err().to_string()
 }
 
 #[test]
 fn measures_without_a_meaning_are_refused() {
-    let displacement = |region, component, least| FieldMeasure::Displacement { region, component, least };
+    let displacement = |region, axis, least| Quantity::Displacement { region, relative_to: None, axis, least };
     let nearby = Region { upper: [1.0, 100.0, 100.0], ..face("lower", "x1-max") };
     let low = Region { upper: [100.0, 100.0, 10.0], ..Region::WHOLE };
     let at_supports = Region { upper: [25.0, 100.0, 100.0], ..Region::WHOLE };
     for (measure, words) in [
-        (displacement(Region::WHOLE, Some(3), false), ["limits[2].component = 3", "0, 1 or 2"]),
+        (displacement(Region::WHOLE, Some(3), false), ["limits[2].axis = 3", "0, 1 or 2"]),
         (displacement(Region::WHOLE, None, true), ["limits[2].least = true", "length"]),
         (
             displacement(face("lower", "topp"), None, false),
@@ -104,11 +118,11 @@ fn measures_without_a_meaning_are_refused() {
         (displacement(nearby, None, false), ["limits[2].region", "node of the face"]),
         (displacement(low, None, false), ["limits[2].region", "centre of a cell"]),
         (
-            FieldMeasure::PeakStress { region: face("lower", "top"), without_held: false },
+            Quantity::Stress { region: face("lower", "top"), without_held: false },
             ["limits[2].region.face = \"top\"", "whole cells"],
         ),
         (
-            FieldMeasure::PeakStress { region: at_supports, without_held: true },
+            Quantity::Stress { region: at_supports, without_held: true },
             ["limits[2].without_held = true", "every cell of the region"],
         ),
     ] {

@@ -4,7 +4,7 @@ use crate::common::{change_counter_surface, start_height};
 use contact::body::mesh::BlockFace;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldMeasure, Limit, LimitSide, LimitedQuantity, Measure, NodeWeight, PressureMeasure, Region};
+use contact::cost::{Limit, LimitSide, NodeWeight, PressureMeasure, Quantity, Region};
 use contact::load_cases::{LoadCase, Over};
 use contact::scene::{Load, Scene, hertz};
 use contact::solvers::{Processes, SolverPlan};
@@ -23,15 +23,15 @@ fn scenes() -> [(&'static str, Scene); 3] {
     [("left", scene(-500.0, 0.3, -0.5)), ("still", scene(0.0, 0.0, 0.0)), ("right", scene(500.0, 0.3, 0.5))]
 }
 
-fn norm() -> Measure {
-    Measure::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes })
+fn norm() -> Quantity {
+    Quantity::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes })
 }
 
 /// The objective over some cases, by solvers of one run.
 fn objective(
     scenes: &[(&str, Scene)],
     kind: SolverKind,
-    measure: &Measure,
+    measure: &Quantity,
     over: Over,
     limits: &[Limit],
 ) -> ContactObjective {
@@ -40,9 +40,9 @@ fn objective(
         name: (*name).to_owned(),
         weight: [1.0, 1.5, 0.9][index % 3],
         shape: ContactShape::by(processes.solver(SolverPlan::new(scene.clone(), kind)).unwrap()),
-        measure: measure.clone(),
+        quantity: measure.clone(),
     };
-    ContactObjective::of_cases(scenes.iter().enumerate().map(case).collect(), over, limits).unwrap()
+    ContactObjective::of_cases(scenes.iter().enumerate().map(case).collect(), over, limits, &[]).unwrap()
 }
 
 fn shape(objective: &ContactObjective, seed: u64) -> Vector {
@@ -100,7 +100,7 @@ fn equal_cases_are_worth_a_single_one() {
 
 #[test]
 fn the_subgradient_over_cases_is_that_of_differences() {
-    let field = Measure::Field(FieldMeasure::Compliance);
+    let field = Quantity::Compliance;
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         for (measure, over) in [(norm(), Over::Worst), (norm(), Over::Sum), (field.clone(), Over::Sum)] {
             let objective = objective(&scenes(), kind, &measure, over, &[]);
@@ -116,10 +116,10 @@ fn the_stacked_jacobian_has_the_rows_that_adjoints_give() {
     for (measure, kind) in [
         (norm(), SolverKind::Newton),
         (norm(), SolverKind::Direct),
-        (Measure::Field(FieldMeasure::Compliance), SolverKind::Direct),
-        (Measure::Volume, SolverKind::Direct),
+        (Quantity::Compliance, SolverKind::Direct),
+        (Quantity::Volume, SolverKind::Direct),
     ] {
-        let limit = Limit::new(LimitedQuantity::PeakPressure, LimitSide::AtMost, 5000.0);
+        let limit = Limit::new(Quantity::Pressure(PressureMeasure::Peak), LimitSide::AtMost, 5000.0);
         let objective = objective(&scenes(), kind, &measure, Over::Worst, &[limit]);
         let (cases, at) = (objective.cases(), shape(&objective, 7));
         let states = cases.solve(&at, None, Accuracy::TIGHTEST).unwrap();
@@ -133,7 +133,7 @@ fn the_stacked_jacobian_has_the_rows_that_adjoints_give() {
         assert!((&pulled - &product).norm() < 1e-7 * product.norm(), "{measure:?} {kind:?}");
         // With two active cases, the model of the worst needs the curvature of both.
         let parts = nonsmooth::composite::OuterFunction::parts(objective.cost(), &known.outputs);
-        assert_eq!(parts.len(), if measure == Measure::Volume { 0 } else { 3 });
+        assert_eq!(parts.len(), if measure == Quantity::Volume { 0 } else { 3 });
     }
 }
 
@@ -167,26 +167,21 @@ fn the_bending_is_added_with_its_derivatives() {
 }
 
 fn limits() -> Vec<Limit> {
-    let field = |measure| LimitedQuantity::Field(measure);
     let region = Region { body: Some("lower".into()), face: Some("top".into()), ..Region::WHOLE };
-    let displacement = |least| FieldMeasure::Displacement { region: region.clone(), component: Some(2), least };
+    let displacement =
+        |least| Quantity::Displacement { region: region.clone(), relative_to: None, axis: Some(2), least };
     let one = |quantity, side, bound, case: Option<&str>| Limit {
         case: case.map(str::to_owned),
         ..Limit::new(quantity, side, bound)
     };
     vec![
-        one(LimitedQuantity::Volume, LimitSide::AtMost, 990.0, None),
-        one(field(FieldMeasure::Compliance), LimitSide::AtMost, 1e5, Some("right")),
-        one(LimitedQuantity::PeakPressure, LimitSide::AtMost, 9000.0, None),
-        one(
-            field(FieldMeasure::PeakStress { region: Region::WHOLE, without_held: true }),
-            LimitSide::AtMost,
-            3000.0,
-            None,
-        ),
-        one(field(displacement(false)), LimitSide::AtMost, 0.1, Some("left")),
-        one(field(displacement(true)), LimitSide::AtLeast, -0.5, Some("left")),
-        one(LimitedQuantity::LoadedArea { pressure: 2500.0 }, LimitSide::AtLeast, 60.0, Some("still")),
+        one(Quantity::Volume, LimitSide::AtMost, 990.0, None),
+        one(Quantity::Compliance, LimitSide::AtMost, 1e5, Some("right")),
+        one(Quantity::Pressure(PressureMeasure::Peak), LimitSide::AtMost, 9000.0, None),
+        one(Quantity::Stress { region: Region::WHOLE, without_held: true }, LimitSide::AtMost, 3000.0, None),
+        one(displacement(false), LimitSide::AtMost, 0.1, Some("left")),
+        one(displacement(true), LimitSide::AtLeast, -0.5, Some("left")),
+        one(Quantity::LoadedArea { pressure: 2500.0 }, LimitSide::AtLeast, 60.0, Some("still")),
     ]
 }
 

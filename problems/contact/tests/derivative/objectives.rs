@@ -4,13 +4,12 @@ use crate::common::start_height;
 use contact::body::mesh::BlockFace;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldCost, FieldMeasure, Limit, LimitSide, LimitedQuantity};
-use contact::cost::{Measure, NodeWeight, PressureMeasure, Region};
+use contact::cost::{
+    Limit, LimitSide, NodeWeight, PressureMeasure, Quantity, Region, StateCost, StateView, WantedPressure,
+};
 use contact::scene::{Load, LoadKind, Scene, hertz, signorini};
 use nonsmooth::verify::{Direction, seeded_direction, taylor_test};
-use nonsmooth::{
-    Accuracy, Answer, Evaluation, NonsmoothObjective, OracleError, ReducedObjective, Request, StateSolver, Vector,
-};
+use nonsmooth::{Accuracy, Answer, Evaluation, NonsmoothObjective, OracleError, Request, StateSolver, Vector};
 
 const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 
@@ -42,7 +41,7 @@ fn controls(shape: &ContactShape, seed: u64) -> Vector {
 
 /// Smallest relative error of the directional derivative over the steps of a Taylor table around a shape without a kink
 /// nearby, and the evaluation there.
-fn derivative_error(shape: ContactShape, measure: Measure) -> (f64, f64, Vector) {
+fn derivative_error(shape: ContactShape, measure: Quantity) -> (f64, f64, Vector) {
     let at = controls(&shape, 3);
     let height = start_height(&shape.problem().scene);
     let objective = ContactObjective::new(shape, measure, &[]).unwrap();
@@ -54,7 +53,7 @@ fn derivative_error(shape: ContactShape, measure: Measure) -> (f64, f64, Vector)
 }
 
 /// Both solvers have the derivative that differences have, and the same one.
-fn differentiated(name: &str, scene: &Scene, measure: impl Fn(&ContactShape) -> Measure) {
+fn differentiated(name: &str, scene: &Scene, measure: impl Fn(&ContactShape) -> Quantity) {
     let found = KINDS.map(|kind| {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let measure = measure(&shape);
@@ -79,9 +78,9 @@ fn stress_norm() {
     for scene in scenes() {
         let bodies = if scene.bodies.len() > 1 { vec![None, Some("lower"), Some("upper")] } else { vec![None] };
         for (body, exponent) in bodies.into_iter().zip([6.0, 12.0, 3.0]) {
-            let measure = FieldMeasure::StressNorm { region: region(&scene, body), exponent };
+            let measure = Quantity::StressNorm { region: region(&scene, body), exponent };
             let name = format!("stress norm {exponent}, body {body:?}");
-            differentiated(&name, &scene, |_| Measure::Field(measure.clone()));
+            differentiated(&name, &scene, |_| measure.clone());
         }
     }
 }
@@ -90,12 +89,12 @@ fn stress_norm() {
 fn largest_stress_and_displacement() {
     for scene in scenes() {
         let region = region(&scene, None);
-        let stress = FieldMeasure::PeakStress { region: region.clone(), without_held: false };
-        differentiated("largest stress", &scene, |_| Measure::Field(stress.clone()));
-        for (component, least) in [(Some(2), true), (Some(2), false), (None, false)] {
-            let measure = FieldMeasure::Displacement { region: region.clone(), component, least };
-            let name = format!("displacement {component:?}, least {least}");
-            differentiated(&name, &scene, |_| Measure::Field(measure.clone()));
+        let stress = Quantity::Stress { region: region.clone(), without_held: false };
+        differentiated("largest stress", &scene, |_| stress.clone());
+        for (axis, least) in [(Some(2), true), (Some(2), false), (None, false)] {
+            let measure = Quantity::Displacement { region: region.clone(), relative_to: None, axis, least };
+            let name = format!("displacement {axis:?}, least {least}");
+            differentiated(&name, &scene, |_| measure.clone());
         }
     }
 }
@@ -103,7 +102,7 @@ fn largest_stress_and_displacement() {
 #[test]
 fn compliance() {
     for scene in scenes() {
-        differentiated("compliance", &scene, |_| Measure::Field(FieldMeasure::Compliance));
+        differentiated("compliance", &scene, |_| Quantity::Compliance);
     }
 }
 
@@ -121,10 +120,10 @@ fn measures_of_the_pressures() {
             let grid = shape.problem().scene.bodies[0].block().unwrap().grid();
             let places = grid.places();
             let wanted = places.map(|[x1, x2]| mean * (1.0 + x1 / grid.size[0] - x2 / grid.size[1])).collect();
-            Measure::Pressure(PressureMeasure::Deviation { wanted })
+            Quantity::Pressure(PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(wanted) })
         });
         differentiated("open area", &scene, |shape| {
-            Measure::Pressure(PressureMeasure::OpenArea { pressure: 1.7 * mean_pressure(shape) })
+            Quantity::Pressure(PressureMeasure::OpenArea { pressure: 1.7 * mean_pressure(shape) })
         });
     }
 }
@@ -133,10 +132,10 @@ fn measures_of_the_pressures() {
 fn successive_approximations_share_the_adjoint() {
     let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]).with_friction(0.3);
     let subgradient = |kind| {
-        let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
-        let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let at = controls(&shape, 3);
-        ReducedObjective::new(shape, cost).evaluate(&Request::tight(&at)).unwrap().into_evaluation().subgradient
+        let objective = ContactObjective::new(shape, Quantity::Compliance, &[]).unwrap();
+        objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().subgradient
     };
     let [paper, direct] = [SolverKind::AugmentedLagrangian, SolverKind::Direct].map(subgradient);
     // Their states are accurate to 1e-9 or so.
@@ -144,7 +143,7 @@ fn successive_approximations_share_the_adjoint() {
 }
 
 #[test]
-fn a_dual_of_another_size_and_a_state_without_displacements_are_refused() {
+fn a_dual_of_another_size_is_refused_and_a_state_without_displacements_has_no_value() {
     let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
     for kind in KINDS {
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
@@ -155,10 +154,8 @@ fn a_dual_of_another_size_and_a_state_without_displacements_are_refused() {
             assert!(refusal.contains("dual of the contact state"), "{refusal}");
         }
         assert!(shape.position_sensitivity(&state, &Vector::zeros(sizes[0] + sizes[1])).is_ok());
-        let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
-        let objective = ReducedObjective::new(shape, cost);
-        let refusal = objective.evaluate(&Request::tight(&objective.solver().start())).unwrap_err().to_string();
-        assert!(refusal.contains("value"), "{refusal}");
+        let cost = StateCost::new("objective", &Quantity::Compliance, shape.problem()).unwrap().unwrap();
+        assert!(cost.value(shape.problem(), StateView::of(&state)).is_nan());
     }
 }
 
@@ -167,8 +164,8 @@ fn regions_without_a_brick_or_a_body_are_refused() {
     let scene = signorini().unwrap().with_bricks([4; 3], [2; 3]);
     let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
     let refused = |region: Region| {
-        let measure = FieldMeasure::StressNorm { region, exponent: 4.0 };
-        FieldCost::new(measure, shape.problem()).unwrap_err().to_string()
+        let measure = Quantity::StressNorm { region, exponent: 4.0 };
+        StateCost::new("objective", &measure, shape.problem()).unwrap_err().to_string()
     };
     let all = Region::WHOLE;
     let outside = refused(Region { lower: [0.0, 0.0, 200.0], ..all.clone() });
@@ -204,8 +201,8 @@ fn the_limited_peak_has_the_derivative_that_differences_have() {
         let at = controls(&shape, 3);
         let height = start_height(&shape.problem().scene);
         let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
-        let peak = Limit::new(LimitedQuantity::PeakPressure, LimitSide::AtMost, limit);
-        let objective = LimitedPeak(ContactObjective::new(shape, Measure::Pressure(norm), &[peak]).unwrap());
+        let peak = Limit::new(Quantity::Pressure(PressureMeasure::Peak), LimitSide::AtMost, limit);
+        let objective = LimitedPeak(ContactObjective::new(shape, Quantity::Pressure(norm), &[peak]).unwrap());
         let direction = Direction::Given(seeded_direction(36, 4));
         let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
         let test = taylor_test(&objective, &at, &direction, &steps).unwrap();

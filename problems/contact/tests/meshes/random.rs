@@ -8,7 +8,7 @@ use crate::setting::{PATHS, difference, extent, held, lattice, lattice_of, mater
 use contact::body::mesh::Mesh;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, ContactState};
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::scene::{CounterSurface, Geometry, Load, LoadKind, Scene, Side};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, NonsmoothObjective, Request, StateSolver, Vector};
@@ -139,7 +139,7 @@ fn scene_of(case: &Case) -> Scene {
 /// The gradient of a pressure norm.
 fn gradient(shape: ContactShape, controls: &Vector) -> Vector {
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-    let objective = ContactObjective::new(shape, Measure::Pressure(norm), &[]).unwrap();
+    let objective = ContactObjective::new(shape, Quantity::Pressure(norm), &[]).unwrap();
     objective.evaluate(&Request::tight(controls)).unwrap().into_evaluation().subgradient
 }
 

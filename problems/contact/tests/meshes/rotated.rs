@@ -6,7 +6,7 @@ use crate::setting::{PATHS, Rotation, difference, held, lattice_of, pushed, scen
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity, Region};
 use contact::scene::{CounterSurface, Held, Scene, Side, Support};
 use contact::shape::Coordinates;
 use nonsmooth::verify::seeded_direction;
@@ -42,7 +42,7 @@ struct Found {
     gradient: Vector,
 }
 
-fn solved(scene: &Scene, path: SolverKind, measure: &Measure) -> Found {
+fn solved(scene: &Scene, path: SolverKind, measure: &Quantity) -> Found {
     let shape = ContactShape::new(scene.clone(), path).unwrap();
     let objective = ContactObjective::new(shape, measure.clone(), &[]).unwrap();
     let controls = seeded_direction(scene.control_count(), 5) * 0.05;
@@ -62,8 +62,8 @@ fn solved(scene: &Scene, path: SolverKind, measure: &Measure) -> Found {
 #[test]
 fn supports_along_oblique_normals_hold_like_those_along_axes() {
     let measures = [
-        Measure::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area }),
-        Measure::Field(FieldMeasure::StressNorm { region: Region::WHOLE, exponent: 6.0 }),
+        Quantity::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area }),
+        Quantity::StressNorm { region: Region::WHOLE, exponent: 6.0 },
     ];
     for (kind, friction) in KINDS.into_iter().flat_map(|kind| [(kind, 0.0), (kind, 0.3)]) {
         for path in PATHS {

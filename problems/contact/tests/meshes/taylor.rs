@@ -6,15 +6,21 @@ use crate::grid::KINDS;
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity, Region};
 use contact::equilibrium::StatusCounts;
 use contact::scene::Scene;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
-fn measures() -> [(&'static str, Measure); 2] {
+fn measures(friction: f64) -> Vec<(&'static str, Quantity)> {
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-    let stress = FieldMeasure::StressNorm { region: Region::WHOLE, exponent: 6.0 };
-    [("pressure norm", Measure::Pressure(norm)), ("stress norm", Measure::Field(stress))]
+    let stress = Quantity::StressNorm { region: Region::WHOLE, exponent: 6.0 };
+    let mut measures = vec![("pressure norm", Quantity::Pressure(norm)), ("stress norm", stress)];
+    if friction > 0.0 {
+        let held = Region { face: Some("x1-min".into()), ..Region::WHOLE };
+        measures.push(("reaction", Quantity::Reaction { region: held, axis: None }));
+        measures.push(("contact moment", Quantity::ContactMoment { contact: None, axis: Some(0), about: [1.0; 3] }));
+    }
+    measures
 }
 
 /// Steps in units of the direction, whose entries are up to 1 mm.
@@ -76,7 +82,7 @@ fn linear_part(remainders: &[f64]) -> f64 {
 }
 
 /// The shape of some seed, near which no status changes: the first of a few, so that no case is left out.
-fn case(scene: &Scene, measure: &Measure, seed: u64) -> Found {
+fn case(scene: &Scene, measure: &Quantity, seed: u64) -> Found {
     let shape = ContactShape::new(scene.clone(), SolverKind::Newton).unwrap();
     let objective = ContactObjective::new(shape, measure.clone(), &[]).unwrap();
     let mut reasons = Vec::new();
@@ -96,7 +102,7 @@ fn check(kind: CellKind) {
     for (number, (name, obstacle)) in obstacles().into_iter().enumerate() {
         for friction in [0.0, 0.3, 0.8] {
             let scene = pressed(kind, obstacle.clone(), friction);
-            for (what, measure) in measures() {
+            for (what, measure) in measures(friction) {
                 let found = case(&scene, &measure, 10 * number as u64 + 1);
                 let (slope, linear) = (slope(&found.remainders), linear_part(&found.remainders) / found.size);
                 println!(
@@ -132,7 +138,7 @@ fn remainders_are_quadratic_on_tetrahedra() {
 #[test]
 fn a_slightly_wrong_derivative_is_noticed() {
     let (_, obstacle) = obstacles().swap_remove(1);
-    let [_, (_, measure)] = measures();
+    let (_, measure) = measures(0.0).swap_remove(1);
     let found = case(&pressed(CellKind::Hex8, obstacle, 0.3), &measure, 11);
     let wrong: Vec<f64> = found.remainders.iter().zip(STEPS).map(|(r, t)| r + 1e-4 * t * found.derivative).collect();
     let linear = linear_part(&wrong) / found.derivative;

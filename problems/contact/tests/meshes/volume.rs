@@ -6,7 +6,7 @@ use crate::setting::{held, pushed, scene};
 use contact::body::mesh::Mesh;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{Limit, LimitSide, LimitedQuantity, Measure, NodeWeight, PressureMeasure};
+use contact::cost::{Limit, LimitSide, NodeWeight, PressureMeasure, Quantity};
 use contact::scene::CounterSurface;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{ConstraintEvaluation, ConstraintKind, NonsmoothObjective, Request, Vector};
@@ -18,7 +18,7 @@ fn objective(mesh: Mesh, top: f64, limits: &[Limit]) -> ContactObjective {
     scene.bodies[0].loads = vec![pushed("x1-max", [-1.0, 0.0, 1.0])];
     let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-    ContactObjective::new(shape, Measure::Pressure(norm), limits).unwrap()
+    ContactObjective::new(shape, Quantity::Pressure(norm), limits).unwrap()
 }
 
 fn constraints(objective: &ContactObjective, at: &Vector) -> ConstraintEvaluation {
@@ -62,9 +62,9 @@ fn check(objective: &ContactObjective, name: &str) {
 fn the_limit_of_the_volume_has_its_value_and_its_gradient() {
     let limit = Limit::new;
     let limits = [
-        limit(LimitedQuantity::RelativeVolume, LimitSide::Equal, 1.1),
-        limit(LimitedQuantity::RelativeVolume, LimitSide::AtLeast, 0.9),
-        limit(LimitedQuantity::PeakPressure, LimitSide::AtMost, 100.0),
+        limit(Quantity::RelativeVolume, LimitSide::Equal, 1.1),
+        limit(Quantity::RelativeVolume, LimitSide::AtLeast, 0.9),
+        limit(Quantity::Pressure(PressureMeasure::Peak), LimitSide::AtMost, 100.0),
     ];
     for kind in KINDS {
         let bodies = [

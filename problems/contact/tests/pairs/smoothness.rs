@@ -4,7 +4,7 @@ use crate::setting::{body, boxed, pair, stacked};
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::scene::{Scene, Support};
 use contact::shape::{Coordinates, Directions, LatticeShape};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -54,7 +54,7 @@ fn largest_jump(distortion: f64, slave: usize) -> f64 {
     const STEPS: usize = 80;
     let shape = ContactShape::new(sliding(distortion, slave), SolverKind::Direct).unwrap();
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-    let objective = ContactObjective::new(shape, Measure::Pressure(norm), &[]).unwrap();
+    let objective = ContactObjective::new(shape, Quantity::Pressure(norm), &[]).unwrap();
     let looks = |from: f64, width: f64, steps: usize| -> Vec<Slope> {
         (0..=steps).map(|step| slope(&objective, from + width * step as f64)).collect()
     };

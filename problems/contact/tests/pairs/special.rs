@@ -5,7 +5,7 @@ use crate::setting::{body, boxed, lattice, pair, stacked};
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::equilibrium::ContactProblem;
 use contact::scene::{
     BodyFace, ContactScene, CounterSurface, Geometry, Load, Master, NormalKind, Scene, Support, hertz,
@@ -92,7 +92,7 @@ fn one_vector_of_controls_shapes_both_surfaces() {
         scene.contacts[0].normal = normal;
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let set = shape.problem().admissible.clone();
-        let measure = Measure::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area });
+        let measure = Quantity::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area });
         let objective = ContactObjective::new(shape, measure, &[]).unwrap();
         let start = Vector::from_vec(scene.start());
         let at = Vector::from_fn(start.len(), |k, _| start[k] + 0.05 * (2.0 * k as f64 + 1.0).cos());

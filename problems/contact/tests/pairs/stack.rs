@@ -3,7 +3,7 @@
 use crate::setting::{body, boxed, lattice, symmetric};
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::scene::{BodyFace, ContactScene, Load, Master, Scene, Support};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
@@ -61,7 +61,7 @@ fn subgradients_are_those_of_differences() {
         let scene = tower(0.05);
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
         let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-        let objective = ContactObjective::new(shape, Measure::Pressure(norm), &[]).unwrap();
+        let objective = ContactObjective::new(shape, Quantity::Pressure(norm), &[]).unwrap();
         let solve = |control: &Vector| objective.cases().solve(control, None, Accuracy::TIGHTEST).unwrap();
         let (at, step) = (at(&scene), 2e-5);
         let here = solve(&at);

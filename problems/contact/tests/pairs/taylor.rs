@@ -6,7 +6,7 @@ use crate::setting::{body, lattice, pair, stacked};
 use contact::body::mesh::CellKind;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::equilibrium::TangentsOf;
 use contact::scene::{NormalKind, Scene};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -32,12 +32,12 @@ pub fn curved(kind: CellKind, boxes: [[usize; 3]; 2], slave: usize, friction: f6
     pair(bodies, slave, friction)
 }
 
-fn objective(scene: &Scene, kind: SolverKind, measure: &Measure) -> ContactObjective {
+fn objective(scene: &Scene, kind: SolverKind, measure: &Quantity) -> ContactObjective {
     ContactObjective::new(ContactShape::new(scene.clone(), kind).unwrap(), measure.clone(), &[]).unwrap()
 }
 
 /// Relative difference of ⟨g, d⟩ and the difference quotient of fourth order.
-fn slope_error(scene: &Scene, kind: SolverKind, measure: &Measure) -> f64 {
+fn slope_error(scene: &Scene, kind: SolverKind, measure: &Quantity) -> f64 {
     let objective = objective(scene, kind, measure);
     let count = scene.control_count();
     let at = Vector::from_fn(count, |k, _| 0.02 * (2.0 * k as f64 + 1.0).cos());
@@ -56,10 +56,15 @@ fn slope_error(scene: &Scene, kind: SolverKind, measure: &Measure) -> f64 {
     (slope / quotient - 1.0).abs()
 }
 
-fn measures() -> [Measure; 2] {
+fn measures(friction: f64) -> Vec<Quantity> {
     let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-    let stress = contact::cost::FieldMeasure::StressNorm { region: contact::cost::Region::WHOLE, exponent: 6.0 };
-    [Measure::Pressure(norm), Measure::Field(stress)]
+    let stress = Quantity::StressNorm { region: contact::cost::Region::WHOLE, exponent: 6.0 };
+    let moment = Quantity::ContactMoment { contact: None, axis: Some(1), about: [1.0, 2.0, 3.0] };
+    let mut measures = vec![Quantity::Pressure(norm), stress, moment, Quantity::MeanPressure { contact: Some(0) }];
+    if friction > 0.0 {
+        measures.push(Quantity::ContactForce { contact: None, axis: Some(0) });
+    }
+    measures
 }
 
 #[test]
@@ -71,13 +76,36 @@ fn subgradients_are_those_of_differences() {
                 for friction in [0.0, 0.3] {
                     let mut scene = curved(kind, boxes, slave, friction);
                     scene.contacts[0].normal = normal;
-                    for measure in &measures() {
+                    for measure in &measures(friction) {
                         for solver in [SolverKind::Direct, SolverKind::Newton] {
                             let error = slope_error(&scene, solver, measure);
-                            println!("{kind:?} {slave} {normal:?} {friction} {solver:?}: {error:.1e}");
-                            assert!(error < 2e-6, "{kind:?} {slave} {normal:?} {friction} {solver:?}: {error:e}");
+                            println!(
+                                "{kind:?} {slave} {normal:?} {friction} {solver:?} {}: {error:.1e}",
+                                measure.name()
+                            );
+                            assert!(
+                                error < 2e-6,
+                                "{kind:?} {slave} {normal:?} {friction} {solver:?} {measure:?}: {error:e}"
+                            );
                         }
                     }
+                }
+            }
+        }
+    }
+}
+
+/// With so little friction the faces slide.
+#[test]
+fn work_and_slip_of_sliding_faces_have_the_derivatives_of_differences() {
+    for (kind, boxes) in [(CellKind::Hex8, [[3, 3, 2], [4, 4, 2]]), (CellKind::Tet10, [[2, 2, 1], [3, 3, 1]])] {
+        for slave in [0, 1] {
+            let scene = curved(kind, boxes, slave, 0.02);
+            for quantity in [Quantity::FrictionWork { contact: None }, Quantity::Slip { contact: Some(0) }] {
+                for solver in [SolverKind::Direct, SolverKind::Newton] {
+                    let error = slope_error(&scene, solver, &quantity);
+                    println!("{kind:?} {slave} {solver:?} {}: {error:.1e}", quantity.name());
+                    assert!(error < 2e-6, "{kind:?} {slave} {solver:?} {quantity:?}: {error:e}");
                 }
             }
         }

@@ -4,6 +4,7 @@ use crate::common::change_counter_surface;
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{Quantity, Region, StateCost, StateView};
 use contact::equilibrium::ContactProblem;
 use contact::fields::Resultants;
 use contact::scene::{CounterSurface, Held, Load, NormalKind, Scene, Support, hertz, signorini};
@@ -54,6 +55,50 @@ fn loads_contact_forces_and_reactions_are_in_balance_and_the_same_for_both_solve
         assert_eq!((one.body, one.cell), (other.body, other.cell));
         assert!((one.value / other.value - 1.0).abs() < 1e-7, "{one:?} {other:?}");
         assert!(size(std::array::from_fn(|axis| one.place[axis] - other.place[axis])) < 1e-9);
+    }
+}
+
+/// Quantities are computed from the work on rigid motions, resultants from sums over nodes.
+#[test]
+fn quantities_of_forces_are_the_resultants() {
+    for scene in scenes() {
+        for kind in KINDS {
+            let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
+            let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+            let (problem, resultants) = (shape.problem(), shape.resultants(&state).unwrap());
+            let value = |quantity: Quantity| {
+                let cost = StateCost::new("report", &quantity, problem).unwrap().unwrap();
+                cost.value(problem, StateView::of(&state))
+            };
+            let slave = problem.scene.contacts[0].slave.body;
+            let scale = size(resultants.bodies[slave].contact);
+            let agrees = |quantity: Quantity, exact: f64| {
+                let found = value(quantity.clone());
+                assert!(
+                    (found - exact).abs() < 1e-8 * scale,
+                    "{}, {kind:?}, {quantity:?}: {found} {exact}",
+                    scene.name
+                );
+            };
+            for axis in 0..3 {
+                let force = resultants.bodies[slave].contact[axis];
+                agrees(Quantity::ContactForce { contact: Some(0), axis: Some(axis) }, force);
+            }
+            agrees(Quantity::ContactForce { contact: None, axis: None }, scale);
+            for body in &resultants.bodies {
+                for support in &body.supports {
+                    let own = body.supports.iter().filter(|other| other.face == support.face);
+                    let sum =
+                        own.fold([0.0; 3], |sum, other| std::array::from_fn(|axis| sum[axis] + other.force[axis]));
+                    let (name, face) = (Some(body.body.clone()), Some(support.face.clone()));
+                    let region = Region { body: name, face, ..Region::WHOLE };
+                    for axis in 0..3 {
+                        agrees(Quantity::Reaction { region: region.clone(), axis: Some(axis) }, sum[axis]);
+                    }
+                    agrees(Quantity::Reaction { region, axis: None }, size(sum));
+                }
+            }
+        }
     }
 }
 

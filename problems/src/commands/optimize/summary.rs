@@ -126,7 +126,6 @@ impl Ended<'_> {
         result.extend(shape_facts::limits(&shapes));
         result.extend(self.limits()?);
         result.extend(shape_facts::objective(objective, &shapes).into_iter().map(Fact::without_key));
-        result.extend(shape_facts::contact_areas(objective, &shapes));
         result.extend([
             Fact::json("objective_start", &shapes[0].value)?,
             Fact::json("objective", &report.value)?,
@@ -138,6 +137,7 @@ impl Ended<'_> {
         let pair = |title, facts| Group { title, columns: columns.clone(), facts, words: String::new() };
         let groups = vec![
             pair("", result),
+            shape_facts::reports(columns.clone(), &shapes)?,
             self.cases(columns.clone())?,
             Group::new("", scene_words::facts(scene)?),
             self.stages()?,
@@ -179,7 +179,7 @@ impl Ended<'_> {
             let unit = if quantity.unit().is_empty() {
                 "1 (in the ratio)".into()
             } else {
-                format!("one {}", raised(quantity.unit()))
+                format!("one {}", raised(&quantity.unit()))
             };
             let words = match (found.satisfied, active) {
                 (false, _) => "violated".to_owned(),

@@ -93,19 +93,16 @@ struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     fn of(row: &'a Row) -> Option<Self> {
-        match &row.outcome {
-            Outcome::Solved(solved) => Some(Self { row, solved }),
-            Outcome::Failed(_) => None,
-        }
+        Some(Self { row, solved: row.solved()? })
     }
 }
 
-/// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows
-/// that agree in the others.
+/// Objective, peak pressure, contact area and the quantities of the scene over the first option whose values are numbers,
+/// one curve for all rows that agree in the others.
 fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureError>> {
     let numbers = |values: &[String]| values.len() > 1 && values.iter().all(|value| value.parse::<f64>().is_ok());
     let Some(across) = study.vary.iter().position(|varied| numbers(varied.values())) else { return vec![] };
-    let figure = |name: &str, quantity: &str, unit: &str, value: fn(&Solved) -> f64| {
+    let figure = |name: &str, quantity: &str, unit: &str, value: &dyn Fn(&Solved) -> Option<f64>| {
         let mut curves: Vec<Curve> = Vec::new();
         for Shown { row, solved } in shown {
             let mut others = values(row);
@@ -113,7 +110,8 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
             let others = others.iter().zip(study.vary.iter().enumerate().filter(|(index, _)| *index != across));
             let name: Vec<String> = others.map(|(value, (_, varied))| format!("{} {value}", varied.name())).collect();
             let name = if name.is_empty() { "rows".to_owned() } else { name.join(", ") };
-            let point = (place, value(solved));
+            let Some(value) = value(solved) else { continue };
+            let point = (place, value);
             match curves.iter_mut().find(|curve| curve.name == name) {
                 Some(curve) => curve.points.push(point),
                 None => curves.push(Curve { name, points: vec![point] }),
@@ -135,17 +133,24 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
         return vec![];
     }
     let mut figures = vec![
-        figure("peak_pressure", "peak pressure", "MPa", |solved| solved.peak_pressure),
-        figure("contact_area", "contact area", "mm²", |solved| solved.contact_area),
+        figure("peak_pressure", "peak pressure", "MPa", &|solved| Some(solved.peak_pressure)),
+        figure("contact_area", "contact area", "mm²", &|solved| Some(solved.contact_area)),
     ];
     // Values of different units have no axis in common.
     let unit = &shown[0].solved.objective_unit;
     if shown.iter().all(|shown| shown.solved.objective_unit == *unit) {
-        // Figures set what stands in braces higher.
-        let unit = unit.split_once('^').map_or_else(|| unit.clone(), |(base, power)| format!("{base}^{{{power}}}"));
-        figures.insert(0, figure("objective", "Θ", &unit, |solved| solved.objective));
+        figures.insert(0, figure("objective", "Θ", &set(unit), &|solved| Some(solved.objective)));
+    }
+    for (number, (title, unit)) in (1..).zip(study.quantities()) {
+        let value = |solved: &Solved| Some(solved.quantities.iter().find(|told| told.title == title)?.value);
+        figures.push(figure(&format!("quantity_{number}"), &title, &set(&unit), &value));
     }
     figures
+}
+
+/// A unit as figures take it: what stands in braces is set higher.
+fn set(unit: &str) -> String {
+    unit.split_once('^').map_or_else(|| unit.to_owned(), |(base, power)| format!("{base}^{{{power}}}"))
 }
 
 /// The options of a row, and whether its shape is only the best one found.

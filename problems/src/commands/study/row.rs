@@ -49,6 +49,9 @@ pub struct Solved {
     /// The largest violation of a limit over its bound, where there are limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_violation: Option<f64>,
+    /// The quantities that the scene limits and reports.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<Told>,
     /// Tributary area of the closed contact nodes, mm².
     pub contact_area: f64,
     /// The total normal force Σλ_N, N.
@@ -61,6 +64,31 @@ pub struct Solved {
     pub optimization: Option<Optimized>,
     /// Codes of what is implausible about the state, unless that is not checked.
     pub warnings: Vec<String>,
+}
+
+/// The value of a quantity that the scene limits or reports.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Told {
+    /// The quantity with its case, or its label.
+    pub title: String,
+    /// The unit of the value.
+    pub unit: String,
+    pub value: f64,
+}
+
+impl Told {
+    /// The quantities of a shape, each once.
+    fn of(shape: &SolvedShape) -> Vec<Self> {
+        let limits = shape.limits.iter().map(|own| (own.title(), own.limit.quantity.unit(), own.value));
+        let reports = shape.reports.iter().map(|(report, value)| (report.title(), report.quantity.unit(), *value));
+        let mut found: Vec<Self> = Vec::new();
+        for (title, unit, value) in limits.chain(reports) {
+            if found.iter().all(|other| other.title != title) {
+                found.push(Self { title, unit: plain_unit(&unit), value });
+            }
+        }
+        found
+    }
 }
 
 /// The optimization of a row.
@@ -93,6 +121,14 @@ impl Solved {
 }
 
 impl Row {
+    /// What came out, where something did.
+    pub fn solved(&self) -> Option<&Solved> {
+        match &self.outcome {
+            Outcome::Solved(solved) => Some(solved),
+            Outcome::Failed(_) => None,
+        }
+    }
+
     /// Whether it was optimized and found no better shape than its start.
     pub fn is_unchanged(&self) -> bool {
         matches!(&self.outcome, Outcome::Solved(solved) if solved.is_unchanged())
@@ -229,6 +265,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
         objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
         limit_violation: shape.limit_violation(),
+        quantities: Told::of(shape),
         contact_area: shape.state().rows.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),

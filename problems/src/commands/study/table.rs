@@ -1,7 +1,7 @@
 //! The table of a study as text, as comma-separated values and as JSON.
 
 use crate::commands::facts::{Value, aligned, line};
-use crate::commands::numbers::exact;
+use crate::commands::numbers::{exact, raised};
 use crate::commands::study::plan::Plan;
 use crate::commands::study::row::{Optimized, Outcome, Row, Solved};
 use crate::commands::study::varied::{Varied, parts};
@@ -38,7 +38,7 @@ impl StudyJson {
     /// Names of the columns of the table.
     pub fn head(&self) -> Vec<String> {
         let varied = self.vary.iter().map(|varied| varied.name().to_owned());
-        varied.chain(self.shown().map(|column| column.name.to_owned())).collect()
+        varied.chain(self.shown().map(|column| column.name)).collect()
     }
 
     /// The cells of a row; a failed one has its reason in the first cell after the values.
@@ -46,28 +46,51 @@ impl StudyJson {
         let mut cells = values(row);
         match &row.outcome {
             Outcome::Failed(reason) => cells.push(reason.clone()),
-            Outcome::Solved(solved) => cells.extend(self.shown().map(|column| (column.value)(solved).shown())),
+            Outcome::Solved(solved) => cells.extend(self.shown().map(|column| column.value.of(solved).shown())),
         }
         cells
     }
 
     /// The columns that people read.
-    fn shown(&self) -> impl Iterator<Item = &Column> {
-        self.columns().filter(|column| !column.name.is_empty() && (self.optimize || !column.of_run))
+    fn shown(&self) -> impl Iterator<Item = Column> {
+        let optimize = self.optimize;
+        self.columns().into_iter().filter(move |column| !column.name.is_empty() && (optimize || !column.of_run))
     }
 
-    /// The columns; that of the limit only where a row has one.
-    fn columns(&self) -> impl Iterator<Item = &Column> {
-        let limited = |row: &Row| matches!(&row.outcome, Outcome::Solved(solved) if solved.limit_violation.is_some());
-        let has_limit = self.rows.iter().any(limited);
-        COLUMNS.iter().filter(move |column| has_limit || column.key != LIMIT_VIOLATION)
+    /// The columns; that of the limits only where a row has one, and those of the quantities that rows have.
+    fn columns(&self) -> Vec<Column> {
+        let solved: Vec<&Solved> = self.rows.iter().filter_map(Row::solved).collect();
+        let has_limit = solved.iter().any(|row| row.limit_violation.is_some());
+        let mut columns = columns();
+        columns.retain(|column| has_limit || column.key != LIMIT_VIOLATION);
+        let quantities = self.quantities().into_iter().map(|(title, unit)| Column {
+            key: key(&title, &unit),
+            name: if unit.is_empty() { title.clone() } else { format!("{title}, {}", raised(&unit)) },
+            of_run: false,
+            value: Cell::Quantity(title),
+        });
+        let place = columns.iter().position(|column| column.key == CONTACT_AREA).unwrap_or(columns.len());
+        columns.splice(place..place, quantities);
+        columns
+    }
+
+    /// The quantities that rows have, with their units, in the order of the rows.
+    pub fn quantities(&self) -> Vec<(String, String)> {
+        let mut found: Vec<(String, String)> = Vec::new();
+        for told in self.rows.iter().filter_map(Row::solved).flat_map(|row| &row.quantities) {
+            let own = (told.title.clone(), told.unit.clone());
+            if !found.contains(&own) {
+                found.push(own);
+            }
+        }
+        found
     }
 
     /// Comma-separated values with all digits, one line per row.
     pub fn csv(&self) -> String {
         let varied = self.vary.iter().map(|varied| varied.name().replace('-', "_"));
-        let columns: Vec<&Column> = self.columns().filter(|column| !column.key.is_empty()).collect();
-        let keys = columns.iter().map(|column| column.key.to_owned());
+        let columns: Vec<Column> = self.columns().into_iter().filter(|column| !column.key.is_empty()).collect();
+        let keys = columns.iter().map(|column| column.key.clone());
         let head: Vec<String> = varied.chain(keys).chain(["seconds", "reason"].map(str::to_owned)).collect();
         let mut table = head.join(",") + "\n";
         for row in &self.rows {
@@ -77,7 +100,7 @@ impl StudyJson {
                     (vec![String::new(); columns.len()], reason)
                 }
                 Outcome::Solved(solved) => {
-                    (columns.iter().map(|column| cell(&(column.value)(solved))).collect(), String::new())
+                    (columns.iter().map(|column| cell(&column.value.of(solved))).collect(), String::new())
                 }
             };
             let cells = values(row).into_iter().chain(cells).chain([exact(row.seconds), reason]);
@@ -97,22 +120,48 @@ impl StudyJson {
 /// A column of the table behind those of the options.
 struct Column {
     /// Its name in the comma-separated values, with its unit.
-    key: &'static str,
+    key: String,
     /// Its name for people; empty in the comma-separated values only.
-    name: &'static str,
+    name: String,
     /// Whether only rows that were optimized have it.
     of_run: bool,
-    value: fn(&Solved) -> Value,
+    value: Cell,
+}
+
+/// What stands in a column.
+enum Cell {
+    Of(fn(&Solved) -> Value),
+    /// The quantity with this title.
+    Quantity(String),
+}
+
+impl Cell {
+    fn of(&self, solved: &Solved) -> Value {
+        match self {
+            Self::Of(value) => value(solved),
+            Self::Quantity(title) => {
+                let own = solved.quantities.iter().find(|told| told.title == *title);
+                own.map(|told| told.value).into()
+            }
+        }
+    }
+}
+
+/// The name of a column of a quantity in comma-separated values, such as `contact_force_N`.
+fn key(title: &str, unit: &str) -> String {
+    let words = title.replace('"', "").replace([' ', '-', ','], "_");
+    let unit = unit.replace('^', "").replace([' ', '·'], "");
+    if unit.is_empty() { words } else { format!("{words}_{unit}") }
 }
 
 /// A column that every row has.
-const fn column(key: &'static str, name: &'static str, value: fn(&Solved) -> Value) -> Column {
-    Column { key, name, of_run: false, value }
+fn column(key: &str, name: &str, value: fn(&Solved) -> Value) -> Column {
+    Column { key: key.to_owned(), name: name.to_owned(), of_run: false, value: Cell::Of(value) }
 }
 
 /// A column that rows have which were optimized.
-const fn of_run(key: &'static str, name: &'static str, value: fn(&Solved) -> Value) -> Column {
-    Column { key, name, of_run: true, value }
+fn of_run(key: &str, name: &str, value: fn(&Solved) -> Value) -> Column {
+    Column { of_run: true, ..column(key, name, value) }
 }
 
 /// A value of a row that was optimized.
@@ -123,29 +172,34 @@ fn run<V: Into<Value>>(solved: &Solved, value: fn(&Optimized) -> V) -> Value {
 /// The column of the limits.
 const LIMIT_VIOLATION: &str = "limit_violation";
 
-const COLUMNS: [Column; 15] = [
-    of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
-    of_run("peak_pressure_start_MPa", "peak at start, MPa", |row| run(row, |run| run.peak_pressure_start)),
-    column("objective", "objective", |row| row.objective.into()),
-    column("objective_unit", "", |row| row.objective_unit.clone().into()),
-    column("peak_pressure_MPa", "peak, MPa", |row| row.peak_pressure.into()),
-    column(LIMIT_VIOLATION, "beyond limits, share", |row| row.limit_violation.into()),
-    column("contact_area_mm2", "contact area, mm²", |row| row.contact_area.into()),
-    column("total_normal_force_N", "", |row| row.total_normal_force.into()),
-    column("open", "open", |row| row.status.open.into()),
-    column("stick", "stick", |row| row.status.stick.into()),
-    column("slip", "slip", |row| row.status.slip.into()),
-    of_run("evaluations", "evaluations", |row| run(row, |run| run.evaluations)),
-    of_run("confirmed", "", |row| run(row, |run| run.confirmed.to_string())),
-    of_run("", "ended", |row| {
-        let ended = run(row, |run| if run.confirmed { "confirmed".into() } else { run.termination.clone() });
-        if row.is_unchanged() { format!("no better shape; {}", ended.shown()).into() } else { ended }
-    }),
-    column("warnings", "warnings", |row| match row.warnings.is_empty() {
-        true => Value::Missing,
-        false => row.warnings.join("; ").into(),
-    }),
-];
+/// The column of the contact area, before which those of quantities stand.
+const CONTACT_AREA: &str = "contact_area_mm2";
+
+fn columns() -> Vec<Column> {
+    vec![
+        of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
+        of_run("peak_pressure_start_MPa", "peak at start, MPa", |row| run(row, |run| run.peak_pressure_start)),
+        column("objective", "objective", |row| row.objective.into()),
+        column("objective_unit", "", |row| row.objective_unit.clone().into()),
+        column("peak_pressure_MPa", "peak, MPa", |row| row.peak_pressure.into()),
+        column(LIMIT_VIOLATION, "beyond limits, share", |row| row.limit_violation.into()),
+        column(CONTACT_AREA, "contact area, mm²", |row| row.contact_area.into()),
+        column("total_normal_force_N", "", |row| row.total_normal_force.into()),
+        column("open", "open", |row| row.status.open.into()),
+        column("stick", "stick", |row| row.status.stick.into()),
+        column("slip", "slip", |row| row.status.slip.into()),
+        of_run("evaluations", "evaluations", |row| run(row, |run| run.evaluations)),
+        of_run("confirmed", "", |row| run(row, |run| run.confirmed.to_string())),
+        of_run("", "ended", |row| {
+            let ended = run(row, |run| if run.confirmed { "confirmed".into() } else { run.termination.clone() });
+            if row.is_unchanged() { format!("no better shape; {}", ended.shown()).into() } else { ended }
+        }),
+        column("warnings", "warnings", |row| match row.warnings.is_empty() {
+            true => Value::Missing,
+            false => row.warnings.join("; ").into(),
+        }),
+    ]
+}
 
 /// A value as it stands between commas.
 fn cell(value: &Value) -> String {

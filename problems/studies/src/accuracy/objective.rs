@@ -2,7 +2,7 @@
 
 use crate::scaling::{Case, SceneName, Variant};
 use contact::contact_shape::ContactShape;
-use contact::cost::{Measure, NodeWeight, PressureMeasure};
+use contact::cost::{NodeWeight, PressureMeasure, Quantity};
 use contact::equilibrium::ContactProblem;
 use nonsmooth::Vector;
 use nonsmooth::verify::seeded_direction;
@@ -25,7 +25,7 @@ pub fn objective(variant: Variant, scene: SceneName, mesh: usize) -> Result<Cont
     let measure = PressureMeasure::Norm { exponent: EXPONENT, weight: NodeWeight::Nodes };
     let problem = Arc::new(ContactProblem::new(scene.scene(case(mesh))?)?);
     let solver = variant.solver(&problem, 1).map_err(Failure::computation)?;
-    Ok(ContactObjective::new(ContactShape::by(solver), Measure::Pressure(measure), &[])?)
+    Ok(ContactObjective::new(ContactShape::by(solver), Quantity::Pressure(measure), &[])?)
 }
 
 /// Σσ⁴ by the default solver, descent on total FETI.

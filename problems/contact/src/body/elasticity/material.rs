@@ -18,13 +18,15 @@ pub enum Formulation {
 /// Poisson's ratio above which a material counts as nearly incompressible: up to it, Krylov methods do not notice.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
-/// Young's modulus and Poisson's ratio of an isotropic material, and the formulation of its bricks.
+/// Young's modulus and Poisson's ratio of an isotropic material, the formulation of its bricks, and its density.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Material {
     young_modulus: f64,
     poisson_ratio: f64,
     #[serde(default)]
     formulation: Formulation,
+    #[serde(default)]
+    density: Option<f64>,
 }
 
 impl Material {
@@ -37,13 +39,28 @@ impl Material {
         SceneError::require(valid, "Young's modulus", young_modulus, "a finite number > 0 (MPa)")?;
         let valid = poisson_ratio > -1.0 && poisson_ratio < 0.5;
         SceneError::require(valid, "Poisson's ratio", poisson_ratio, "−1 < ν < 0.5")?;
-        Ok(Self { young_modulus, poisson_ratio, formulation: Formulation::default() })
+        Ok(Self { young_modulus, poisson_ratio, formulation: Formulation::default(), density: None })
     }
 
     /// Replaces the formulation of the bricks.
     #[must_use]
     pub fn with_formulation(self, formulation: Formulation) -> Self {
         Self { formulation, ..self }
+    }
+
+    /// Gives the material a density, kg/m³.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless it is finite and > 0.
+    pub fn with_density(self, density: f64) -> Result<Self, SceneError> {
+        let valid = density > 0.0 && density.is_finite();
+        SceneError::require(valid, "density", density, "a finite number > 0 (kg/m³)")?;
+        Ok(Self { density: Some(density), ..self })
+    }
+
+    /// The density in kg/m³, where it is known.
+    pub fn density(&self) -> Option<f64> {
+        self.density
     }
 
     /// A material of the same shear modulus and formulation that can be compressed, for a nearly incompressible one.

@@ -1,6 +1,7 @@
 //! Bounds, derivatives and convexity of the costs of the pressure.
 
 use super::*;
+use crate::cost::WantedPressure;
 use proptest::prelude::*;
 
 /// Σσ^p of forces over areas.
@@ -42,7 +43,11 @@ fn the_lower_bound_of_the_paper_s_example() {
 
 /// A cost over nodes with these areas.
 fn cost_over(measure: PressureMeasure, areas: &[f64]) -> PressureCost {
-    PressureCost::over(measure, areas.to_vec(), false).expect("a measure over as many nodes")
+    let wanted = match &measure {
+        PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(wanted) } => wanted.clone(),
+        _ => Vec::new(),
+    };
+    PressureCost::over("objective", measure, wanted, (areas.to_vec(), false)).expect("a measure over as many nodes")
 }
 
 /// A cost over four nodes.
@@ -54,7 +59,7 @@ fn cost(measure: PressureMeasure) -> PressureCost {
 fn the_least_deviation_is_attained_and_never_undercut() {
     let areas = [1.0, 2.0, 4.0, 0.5];
     for wanted in [vec![3.0, 1.0, 2.0, 8.0], vec![-5.0, 0.0, 1.0, 6.0], vec![5.0; 4]] {
-        let cost = cost(PressureMeasure::Deviation { wanted: wanted.clone() });
+        let cost = cost(PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(wanted.clone()) });
         for force in [0.0, 2.0, 15.0, 40.0] {
             let bound = cost.lower_bound(force).expect("areas that stay");
             // The best of a fine family of pressures that carry the force is not below the bound, and comes near it.
@@ -74,7 +79,7 @@ fn the_least_deviation_is_attained_and_never_undercut() {
         }
     }
     // A pressure that can be had has the bound 0.
-    let uniform = cost(PressureMeasure::Deviation { wanted: vec![5.0; 4] });
+    let uniform = cost(PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(vec![5.0; 4]) });
     assert_eq!(uniform.lower_bound(37.5).expect("areas that stay"), 0.0);
     assert_eq!(uniform.value(&Vector::from_element(4, 5.0)), 0.0);
 }
@@ -105,7 +110,7 @@ fn curvature_of_a_norm_is_the_derivative_of_its_subgradient() {
 
 #[test]
 fn curvature_of_the_deviation_is_the_derivative_of_its_subgradient() {
-    let cost = cost(PressureMeasure::Deviation { wanted: vec![1.0, -2.0, 0.5, 3.0] });
+    let cost = cost(PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(vec![1.0, -2.0, 0.5, 3.0]) });
     let jacobian = Matrix::from_fn(4, 3, |i, j| ((3 * i + j) as f64).sin());
     let (c, d) = (Vector::from_vec(vec![2.0, 0.0, 1.0, 7.0]), Vector::from_vec(vec![0.3, -0.7, 0.4]));
     let difference = cost.subgradient(&(&c + &jacobian * &d)) - cost.subgradient(&c);
@@ -196,7 +201,7 @@ proptest! {
         w in prop::array::uniform4(-5.0_f64..20.0), pressure in 0.5_f64..15.0,
     ) {
         let (a, b) = (Vector::from_vec(a.to_vec()), Vector::from_vec(b.to_vec()));
-        for measure in [PressureMeasure::Deviation { wanted: w.to_vec() }, PressureMeasure::OpenArea { pressure }] {
+        for measure in [PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(w.to_vec()) }, PressureMeasure::OpenArea { pressure }] {
             let cost = cost(measure);
             let (here, there) = (cost.value(&a), cost.value(&b));
             let cut = here + cost.subgradient(&a).dot(&(&b - &a));

@@ -10,10 +10,10 @@ use super::setting::{SECOND, block, load, pressures, solve, support};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldCost, FieldMeasure};
+use contact::cost::{Quantity, StateCost, StateView};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{CounterSurface, Scene};
-use nonsmooth::{Accuracy, Cost, StateSolver};
+use nonsmooth::{Accuracy, StateSolver};
 
 const LENGTH: f64 = 100.0;
 const WIDTH: f64 = 2.0;
@@ -73,8 +73,8 @@ fn slip_length_and_displacement() {
 fn compliance_is_the_work_of_pull_and_pressure() {
     let shape = ContactShape::new(bar(80), SolverKind::Direct).unwrap().with_displacements();
     let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
-    let compliance = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
-    let found = compliance.value(&shape.start(), &state);
+    let compliance = StateCost::new("objective", &Quantity::Compliance, shape.problem()).unwrap().unwrap();
+    let found = compliance.value(shape.problem(), StateView::of(&state));
     let pull = FRICTION * PRESSURE * WIDTH * SLIP_LENGTH;
     let end = FRICTION * PRESSURE * WIDTH * SLIP_LENGTH.powi(2) / (2.0 * MODULUS * WIDTH * HEIGHT);
     let exact = pull * end + PRESSURE * WIDTH * LENGTH * PRESSURE * HEIGHT / MODULUS;
