@@ -1,4 +1,4 @@
-//! The resultant of the forces that the supports of a face exert on its body.
+//! The resultant of the forces that the supports of a face exert on its body; method.md (3.15).
 //!
 //! ```text
 //! R·e = Σ_nodes w·(K u − f) + Σ_r λ_r (B w)_r,     w = Σ (d·e) d over the directions d that the supports hold at a node
