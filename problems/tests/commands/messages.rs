@@ -209,7 +209,7 @@ fn help_has_the_defaults_and_results_name_their_files() {
         "[default: [12, 12, 12]]",
         "[default: 0.3]",
         "[default: 150]",
-        "[default: 4 for the pressure norm, 8 for the stress norm]",
+        "[default: 4 for pressures, 8 for stresses]",
         "[default: optimize]",
         "--set <FIELD=VALUE>",
     ] {

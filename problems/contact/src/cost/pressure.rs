@@ -204,12 +204,7 @@ impl PressureCost {
 
 impl PressureCost {
     /// The value at a state.
-    pub fn value_of<S>(&self, state: &ContactState<S>) -> f64 {
-        self.value_at(StateView::of(state))
-    }
-
-    /// As [`value_of`](Self::value_of), from what the solver does not keep.
-    pub(super) fn value_at(&self, at: StateView<'_>) -> f64 {
+    pub fn value_at(&self, at: StateView<'_>) -> f64 {
         self.value(&Vector::from_vec(self.outputs(false).values(&at.forces.normal, &at.rows.areas())))
     }
 

@@ -31,7 +31,7 @@ pub struct Told {
 /// A quantity on the mesh of a case.
 #[derive(Debug)]
 enum Rated {
-    State(StateCost),
+    State(Box<StateCost>),
     Shape(ShapeFunction),
 }
 
@@ -42,7 +42,7 @@ impl Rated {
         }
         let field = || format!("{place}.quantity");
         let refused = || SceneError::out_of_range(field(), quantity.name(), "a quantity of states or shapes");
-        Ok(Self::State(StateCost::new(place, quantity, problem)?.ok_or_else(refused)?))
+        Ok(Self::State(Box::new(StateCost::new(place, quantity, problem)?.ok_or_else(refused)?)))
     }
 
     fn needs_displacements(&self) -> bool {

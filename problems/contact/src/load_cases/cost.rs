@@ -20,7 +20,7 @@ pub enum CaseCost {
     /// Of the contact pressures, normalised where it may lie outside the range of doubles.
     Pressure(PressureCost),
     /// Another function of the state, an output of its own.
-    State(StateCost),
+    State(Box<StateCost>),
     /// A function of the shape, the same in all cases.
     Shape(ShapeFunction),
 }
@@ -37,7 +37,7 @@ impl CaseCost {
             return Ok(Self::Shape(shape));
         }
         match StateCost::new(PLACE, quantity, problem)? {
-            Some(state) => Ok(Self::State(state)),
+            Some(state) => Ok(Self::State(Box::new(state))),
             None => {
                 Err(SceneError::out_of_range("objective.quantity", quantity.name(), "a quantity of states or shapes"))
             }

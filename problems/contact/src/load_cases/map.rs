@@ -54,7 +54,7 @@ impl LoadCases {
         let one = |(index, LoadCase { name, shape, .. }): (usize, LoadCase)| {
             let (pressures, [in_limits, with_tangents]) = (cost.pressures(index), fields[index]);
             let field = match cost.case(index) {
-                CaseCost::State(state) => Some(state.clone()),
+                CaseCost::State(state) => Some(StateCost::clone(state)),
                 CaseCost::Pressure(_) | CaseCost::Shape(_) => None,
             };
             let with_pressures = pressures.is_some();
