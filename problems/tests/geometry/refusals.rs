@@ -35,7 +35,7 @@ fn fields_that_mean_nothing_on_the_mesh_are_refused() {
         (plane, "normal = [0.0, 0.0, 0.0]", ["contact[0].obstacle", "normal"]),
         ("{ face = \"nose\" }", "{ face = \"wall\" }\narea = \"projected\"", ["contact[0].area", "no area"]),
         ("at_most = 1.0", "at_most = 0.5", ["limit[0].at_least", "at most"]),
-        ("quantity = \"relative-volume\"", "quantity = \"mass\"", ["limit[0].quantity", "relative-volume"]),
+        ("quantity = \"relative-volume\"", "quantity = \"weight\"", ["limit[0].quantity", "relative-volume"]),
         ("lug_hex8.msh", "lug_hex9.msh", ["lug_hex9.msh", "No such file"]),
     ] {
         let (refused, message) = said(right, wrong, &[]);
