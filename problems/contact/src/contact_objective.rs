@@ -43,8 +43,8 @@ impl ContactObjective {
         Self::of_cases(vec![case], Over::Worst, limits, &[])
     }
 
-    /// Some load cases of one shape, at least one, rated together. A limit of no case holds in each of them, and a report
-    /// of no case is told in each.
+    /// Some load cases of one shape, at least one, rated together. A limit of no case holds in each of them, and a
+    /// report of no case is told in each.
     ///
     /// # Errors
     /// As [`CasesCost::new`]; [`SceneError::OutOfRange`] for a limit of an unknown case, a bound that means nothing,

@@ -94,8 +94,8 @@ pub struct Details {
     /// false.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_held: Option<bool>,
-    /// For quantities of a contact: its place in the scene, from 0. Default all contacts; forces and moments are those of
-    /// one.
+    /// For quantities of a contact: its place in the scene, from 0. Default all contacts; forces and moments are those
+    /// of one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e6), extend("x-unit" = "1"))]
     pub contact: Option<usize>,

@@ -292,8 +292,6 @@ fn objectives_are_read_or_refused_with_the_field() {
         "quantity = \"mean-pressure\"\ncontact = 0",
         "quantity = \"contact-moment\"\naxis = \"x1\"\nabout = [1.0, 2.0, 3.0]",
         "quantity = \"reaction\"\nregion = { face = \"x1-min\", body = \"lower\" }",
-        "quantity = \"slip\"",
-        "quantity = \"friction-work\"",
         "quantity = \"loaded-area\"\npressure = 10.0",
         "quantity = \"displacement\"\nrelative_to = { face = \"bottom\", body = \"lower\" }",
     ] {

@@ -3,7 +3,8 @@
 //! ```text
 //! F = −Σ_i f_i,   M = −Σ_i (x_i − p) × f_i,   W = Σ_i λ_T,i·s_i           f_i = λ_N n + λ_T: on what lies opposite
 //! ```
-//! method.md (3.14), (3.16). F·e is minus the work of the forces on a translation of the slave nodes, M·e that on a rotation.
+//! method.md (3.14), (3.16). F·e is minus the work of the forces on a translation of the slave nodes, M·e that on a
+//! rotation.
 
 use crate::cost::piece::StateGradient;
 use crate::cost::row_terms::{RowTerms, dot};

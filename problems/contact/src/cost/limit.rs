@@ -1,5 +1,5 @@
-//! Limits: quantities that a shape must keep on one side of a bound, or at it, beside the objective. Reports: quantities
-//! that are told.
+//! Limits: quantities that a shape must keep on one side of a bound, or at it, beside the objective. Reports:
+//! quantities that are told.
 
 use crate::cost::Quantity;
 use crate::error::SceneError;

@@ -147,8 +147,8 @@ impl<'a> RowTerms<'a> {
         self.pulled(&rows, &forces, |body, node| at.displacement(body, node))
     }
 
-    /// Sensitivities of the positions of all points from those of the rows and, by way of the weights of middle nodes, from
-    /// forces on the weighted values of a field.
+    /// Sensitivities of the positions of all points from those of the rows and, by way of the weights of middle nodes,
+    /// from forces on the weighted values of a field.
     fn pulled(
         self,
         rows: &[RowSensitivities],

@@ -1,4 +1,5 @@
-//! Quantities of contact states on the mesh of a problem, with their derivatives; method.md (3.7), (3.8), (5.5) to (5.7).
+//! Quantities of contact states on the mesh of a problem, with their derivatives; method.md (3.7), (3.8), (5.5) to
+//! (5.7).
 //!
 //! ```text
 //! J(x, λ, u):     ∂J/∂λ and ∂J/∂u are the dual of the adjoint problem,     ∂J/∂x at fixed λ and u is explicit
@@ -45,14 +46,14 @@ enum Function {
 }
 
 impl StateCost {
-    /// A quantity on the bodies of a problem; none for one [of the shape](Quantity::is_of_shape). `place`: what messages
-    /// call the table that has the quantity.
+    /// A quantity on the bodies of a problem; none for one [of the shape](Quantity::is_of_shape). `place`: what
+    /// messages call the table that has the quantity.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] as [`PressureCost::new`]; unless the exponent of a stress norm is finite and > 1; for an
-    /// axis beyond 2, for the smallest length of displacements, for a region of held cells alone that leaves them out,
-    /// for a contact that the scene does not have, for one of several contacts that is not named, for a face without
-    /// supports; and as [`Region::cells`] and [`Region::nodes`].
+    /// [`SceneError::OutOfRange`] as [`PressureCost::new`]; unless the exponent of a stress norm is finite and > 1; for
+    /// an axis beyond 2, for the smallest length of displacements, for a region of held cells alone that leaves them
+    /// out, for a contact that the scene does not have, for one of several contacts that is not named, for a face
+    /// without supports; and as [`Region::cells`] and [`Region::nodes`].
     pub fn new(place: &str, quantity: &Quantity, problem: &ContactProblem) -> Result<Option<Self>, SceneError> {
         if quantity.is_of_shape() {
             return Ok(None);
@@ -143,8 +144,8 @@ impl StateCost {
         }
     }
 
-    /// The derivatives of J at a state: of a maximum or minimum over points those of the first extreme one, which is one
-    /// subgradient of a maximum of such functions. Without the displacements that it needs, and for what
+    /// The derivatives of J at a state: of a maximum or minimum over points those of the first extreme one, which is
+    /// one subgradient of a maximum of such functions. Without the displacements that it needs, and for what
     /// [jumps](Quantity::jumps), 0.
     pub fn gradient(&self, problem: &ContactProblem, at: StateView<'_>) -> StateGradient {
         if self.needs_displacements() && at.bodies.is_empty() {
@@ -167,10 +168,10 @@ impl StateCost {
         }
     }
 
-    /// The smooth functions of which a maximum or minimum over points is made near a state; empty for smooth quantities.
-    /// For a maximum the points whose values are within a tenth of it, at most 200, the largest first; for a minimum
-    /// those within a tenth of the largest absolute value above it, the smallest first. Values and derivatives have the
-    /// sign of the displacements, for a minimum too: J is the smallest of its pieces then.
+    /// The smooth functions of which a maximum or minimum over points is made near a state; empty for smooth
+    /// quantities. For a maximum the points whose values are within a tenth of it, at most 200, the largest first; for
+    /// a minimum those within a tenth of the largest absolute value above it, the smallest first. Values and
+    /// derivatives have the sign of the displacements, for a minimum too: J is the smallest of its pieces then.
     pub fn pieces(&self, problem: &ContactProblem, at: StateView<'_>) -> Vec<StatePiece> {
         match &self.function {
             Function::Extreme(extreme) if !at.bodies.is_empty() => extreme.pieces(RowTerms { problem, at }),

@@ -43,8 +43,8 @@ impl WantedPressure {
     /// The pressures at some places, MPa; `field`: what messages call a formula.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for a formula that is not finite at a place, with the place; for pressures that are not
-    /// finite; [`SceneError::WrongCount`] unless there is one pressure per place.
+    /// [`SceneError::OutOfRange`] for a formula that is not finite at a place, with the place; for pressures that are
+    /// not finite; [`SceneError::WrongCount`] unless there is one pressure per place.
     pub fn at(&self, field: &str, places: &[[f64; 3]]) -> Result<Vec<f64>, SceneError> {
         match self {
             Self::AtNodes(values) => {

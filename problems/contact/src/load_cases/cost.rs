@@ -63,8 +63,8 @@ struct PeakLimit {
     limit: Limit,
 }
 
-/// h of the outputs of all cases: max w_k J_k or Σ w_k J_k, or a function of the shape; with the peak pressures that are limited as
-/// its nonlinear constraints.
+/// h of the outputs of all cases: max w_k J_k or Σ w_k J_k, or a function of the shape; with the peak pressures that
+/// are limited as its nonlinear constraints.
 #[derive(Debug, Clone)]
 pub struct CasesCost {
     over: Over,
@@ -83,8 +83,8 @@ impl CasesCost {
     /// The cost of some cases; of the limits, it takes those of the peak pressure. A limit of no case holds for all.
     ///
     /// # Errors
-    /// [`SceneError`] as [`PressureCost::new`] and [`StateCost::new`]; [`SceneError::OutOfRange`] for weights and bounds
-    /// that are not finite and > 0, for a quantity that jumps, and without a case.
+    /// [`SceneError`] as [`PressureCost::new`] and [`StateCost::new`]; [`SceneError::OutOfRange`] for weights and
+    /// bounds that are not finite and > 0, for a quantity that jumps, and without a case.
     pub fn new(cases: &[WeightedCase<'_>], over: Over, limits: &[Limit]) -> Result<Self, SceneError> {
         let costs = normalised(cases)?;
         let names: Vec<&str> = cases.iter().map(|case| case.name).collect();

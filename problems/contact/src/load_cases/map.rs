@@ -14,8 +14,8 @@ use nonsmooth::{
 use std::ops::Range;
 
 /// The control-to-states map of some cases that share their shape. The dual of its states is that of the cases, one
-/// after the other ([`crate::contact_shape`]); so are its outputs, after which the function of the shape follows that is
-/// the objective, and the rows of its bending where that counts.
+/// after the other ([`crate::contact_shape`]); so are its outputs, after which the function of the shape follows that
+/// is the objective, and the rows of its bending where that counts.
 #[derive(Debug)]
 pub struct LoadCases {
     cases: Vec<OneCase>,

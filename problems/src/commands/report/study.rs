@@ -97,8 +97,8 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// Objective, peak pressure, contact area and the quantities of the scene over the first option whose values are numbers,
-/// one curve for all rows that agree in the others.
+/// Objective, peak pressure, contact area and the quantities of the scene over the first option whose values are
+/// numbers, one curve for all rows that agree in the others.
 fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureError>> {
     let numbers = |values: &[String]| values.len() > 1 && values.iter().all(|value| value.parse::<f64>().is_ok());
     let Some(across) = study.vary.iter().position(|varied| numbers(varied.values())) else { return vec![] };

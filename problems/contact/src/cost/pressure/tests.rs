@@ -201,7 +201,8 @@ proptest! {
         w in prop::array::uniform4(-5.0_f64..20.0), pressure in 0.5_f64..15.0,
     ) {
         let (a, b) = (Vector::from_vec(a.to_vec()), Vector::from_vec(b.to_vec()));
-        for measure in [PressureMeasure::Deviation { wanted: WantedPressure::AtNodes(w.to_vec()) }, PressureMeasure::OpenArea { pressure }] {
+        let wanted = WantedPressure::AtNodes(w.to_vec());
+        for measure in [PressureMeasure::Deviation { wanted }, PressureMeasure::OpenArea { pressure }] {
             let cost = cost(measure);
             let (here, there) = (cost.value(&a), cost.value(&b));
             let cut = here + cost.subgradient(&a).dot(&(&b - &a));
