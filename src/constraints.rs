@@ -117,6 +117,15 @@ impl Polyhedron {
         self
     }
 
+    /// The set with the sides of its linearizations moved apart.
+    pub(crate) fn with_tangents_relaxed(&self, by: f64) -> Self {
+        let mut other = self.clone();
+        let (own, count) = (self.rows.nrows() - self.tangents, self.tangents);
+        other.row_lower.rows_mut(own, count).add_scalar_mut(-by);
+        other.row_upper.rows_mut(own, count).add_scalar_mut(by);
+        other
+    }
+
     /// The set with some of its linearizations only, given by their positions among them.
     pub(crate) fn with_tangents_kept(&self, kept: &[usize]) -> Self {
         let own = self.rows.nrows() - self.tangents;

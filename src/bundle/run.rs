@@ -222,10 +222,18 @@ impl Run<'_, '_> {
     fn steered(&mut self, mut proposal: Proposal) -> Proposal {
         let Some(working) = self.working_set() else { return proposal };
         let Some(constraints) = &mut self.state.constraints else { return proposal };
-        let sum: f64 = proposal.row_multipliers.iter().skip(working.own_rows).map(|m| m.abs()).sum();
-        // Where the violation forces a long step, its length drives the multipliers, in proportion to the weight.
-        let slope = constraints.objective_slope;
-        constraints.raise_penalty(if slope > 0.0 { sum * slope / (slope + proposal.aggregate_norm) } else { 0.0 });
+        let sum = working.multipliers(&proposal);
+        if let Some(left) = proposal.leaves {
+            constraints.sensitivity = sum;
+            proposal.predicted_decrease += constraints.penalty * (constraints.center_violation() - left);
+            return proposal;
+        }
+        if working.restoring() && working.of_pieces && constraints.penalty > 0.0 {
+            // The multipliers of rows that leave hardly any violation say little about what the violation is worth.
+            constraints.sensitivity = sum;
+        } else {
+            constraints.raise_penalty(sum, proposal.aggregate_norm);
+        }
         if working.restoring() {
             // Far cuts of a nonconvex objective say nothing about what the violation is worth: the center's own does.
             let center = self.state.bundle.cut(self.state.center_id);
@@ -298,7 +306,9 @@ impl Run<'_, '_> {
         let trial = Trial::new(&self.state, proposal, &evaluation, accurate, known.as_ref());
         self.tell(|proposer, at| proposer.learn(at, &trial));
         let violated = self.working.as_ref().zip(self.state.constraints.as_deref_mut());
-        if let (Some(((_, working), constraints)), Some(found)) = (violated, trial.constraints.filter(|_| accurate)) {
+        if let (Some(((_, working), constraints)), Some(found)) =
+            (violated, trial.constraints.filter(|_| accurate && proposal.leaves.is_none()))
+        {
             working.learn(constraints, proposal.step_length, trial.serious, &found.values);
         }
         self.state.add_cut(&self.method.config, &proposal.trial, &evaluation, !accurate);

@@ -1,8 +1,8 @@
-//! Limits of scenes, from the scene file to the report, on a small mesh of Example 5.2.
+//! Limits of scenes, from the scene file to the report, on a small mesh of Example 5.2, and on a block under a ball.
 
 use crate::binary;
 use serde_json::Value;
-use testset::kit::json;
+use testset::kit::{json, scratch, text};
 
 fn hertz3d() -> &'static str {
     binary("hertz3d").unwrap()
@@ -66,4 +66,50 @@ fn shapes_within_peak_limits_are_proved() {
         assert_eq!((&found["satisfied"], &found["active"]), (&true.into(), &active.into()), "{found}");
         assert!(result["evaluations"].as_u64().unwrap() <= 35, "{}", result["evaluations"]);
     }
+}
+
+/// A flat block on a rigid ball: the peak pressure of the start is three times the limit, and less volume does not
+/// lower it.
+const BLOCK_ON_BALL: &str = r#"
+name = "block on a ball"
+friction = 0.2
+
+[[body]]
+material = { young_modulus = 1e5, poisson_ratio = 0.3 }
+supports = [{ face = "x1-min", held = ["u1"] }, { face = "x2-min", held = ["u2"] }]
+loads = [{ face = "bottom", traction = [0.0, 0.0, 40.0] }]
+block = { size = [20.0, 20.0], bricks = [6, 6, 3] }
+
+[body.lattice]
+heights = "top"
+control_points = [4, 4]
+start = { form = "plane", height = 10.0 }
+thickness = 8.0
+slope = 0.5
+volume = [0.0, 1e27]
+
+[[contact]]
+slave = { face = "top" }
+obstacle = { form = "sphere", apex = 10.0, radius = 400.0 }
+
+[objective]
+quantity = "volume"
+
+[[limit]]
+quantity = "peak-pressure"
+at_most = 60.0
+"#;
+
+#[test]
+fn the_least_volume_within_a_peak_limit_is_proved_from_far_outside() {
+    let folder = scratch();
+    let file = folder.path().join("ball.toml");
+    std::fs::write(&file, BLOCK_ON_BALL).unwrap();
+    let found = json(binary("contact3d").unwrap(), &[text(&file), "optimize", "--single", "--json"]);
+    let limit = &found["limits"][0];
+    assert_eq!(found["termination"]["confirmed"], true, "{}", found["termination"]);
+    assert!(limit["start"].as_f64().unwrap() > 150.0 && limit["satisfied"] == true, "{limit}");
+    let volume = found["objective"].as_f64().unwrap();
+    assert!((volume / 3310.6 - 1.0).abs() < 1e-3, "{volume}");
+    assert!(found["evaluations"].as_u64().unwrap() <= 55, "{}", found["evaluations"]);
 }

@@ -15,6 +15,7 @@ mod base;
 #[cfg(feature = "interior-point")]
 mod cones;
 mod curvature;
+mod elastic;
 mod escape;
 mod kinks;
 mod model;
@@ -25,6 +26,7 @@ mod scaled_program;
 mod steps;
 mod subproblem;
 mod trust;
+mod weight_fit;
 
 pub use model::OuterCut;
 pub(crate) use proof::PointProof;

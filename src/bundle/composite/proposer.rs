@@ -1,12 +1,15 @@
 //! The trial points of the composite model, and the end of the run at a point that it proves stationary.
 
 use super::base::Base;
+use super::elastic::elastic;
 use super::escape::Escape;
 use super::kinks::{Kinks, Seen};
 use super::proof::PointProof;
 use super::steps::{Changes, Steps, are_curved};
 use super::trust::Trust;
+use super::weight_fit::WeightFit;
 use crate::Vector;
+use crate::bundle::constrained::WorkingSet;
 use crate::bundle::evidence::Evidence;
 use crate::bundle::proof::{Ending, Proof};
 use crate::bundle::proposers::proposal::Proposal;
@@ -35,8 +38,8 @@ pub(crate) struct Composite {
     kinks: Kinks,
     /// Where the model is built: the center, if its Jacobian is known.
     base: Option<Base>,
-    /// A rejected trial point with its Jacobian.
-    rejected: Option<Base>,
+    /// A rejected trial point with its Jacobian, and the violation that the step to it was to leave.
+    rejected: Option<(Base, Option<f64>)>,
     /// Whether the pending trial point is a correction.
     correcting: bool,
     escape: Option<Escape>,
@@ -72,56 +75,79 @@ impl Composite {
         at: &mut Position<'_>,
         base: &Base,
         rejected: &Base,
+        leaves: Option<f64>,
     ) -> Result<Option<Proposal>, Termination> {
         let origin = &base.point - &rejected.point;
         let changes = Changes { set: None, origin: Some(&origin) };
-        let weight = self.trust.next.weight / 10.0;
+        let longest = 0.5 * at.state.norm.length(&origin);
         let constraints = at.state.constraints.as_deref();
         let curved = at.outer.is_some_and(|outer| are_curved(outer, constraints));
-        let known = at.working.zip(constraints).filter(|_| curved);
-        let there = known.and_then(|(working, known)| working.at_rejected(&at.own_set(), known, &rejected.point));
-        let found = match &there {
-            Some(working) => self.steps.step(&mut at.within(working), rejected, weight, changes)?,
-            None => self.steps.step(at, rejected, weight, changes)?,
-        };
-        let Some((proposal, _)) = found else { return Ok(None) };
-        let length = at.state.norm.length(&(&proposal.trial - &rejected.point));
-        let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
-        let worthwhile = at.restoring() || predicted_decrease > at.resolution().small();
-        if length > 0.5 * at.state.norm.length(&origin) || !worthwhile {
-            return Ok(None);
+        let there = at.working.zip(constraints).filter(|_| curved).and_then(|(working, known)| {
+            let left = leaves.unwrap_or(at.state.violation() - working.reduction);
+            working.leaving(left).at_rejected(&at.own_set(), known, &rejected.point)
+        });
+        let mut weight = self.trust.next.weight / 10.0;
+        // Along constraints of several pieces that are kept, a correction that is too long is shortened.
+        for _ in 0..(if at.of_pieces() && !at.restoring() { MAX_WEIGHTS } else { 1 }) {
+            let found = match &there {
+                Some(working) => self.steps.step(&mut at.within(working), rejected, weight, changes)?,
+                None => self.steps.step(at, rejected, weight, changes)?,
+            };
+            let Some((proposal, _)) = found else { return Ok(None) };
+            if at.state.norm.length(&(&proposal.trial - &rejected.point)) <= longest {
+                let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
+                let worthwhile = at.restoring() || predicted_decrease > at.resolution().small();
+                return Ok(Some(Proposal { predicted_decrease, leaves, ..proposal }).filter(|_| worthwhile));
+            }
+            weight *= 10.0;
         }
-        Ok(Some(Proposal { predicted_decrease, ..proposal }))
+        Ok(None)
+    }
+
+    /// A step from a base that violates constraints; silent where there is none.
+    fn restoring_step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
+        let mut weight = self.trust.next.weight.max(LEAST_WEIGHT);
+        let mut fit = WeightFit::new(true);
+        for _ in 0..MAX_WEIGHTS {
+            if at.of_pieces() {
+                let Some(proposal) = elastic(&mut self.steps, at, base, weight)? else { return Ok(Answer::Silent) };
+                if let Some(proposal) = fit.next(proposal, self.trust.next.longest, &mut weight) {
+                    return Ok(Answer::trial(proposal));
+                }
+                continue;
+            }
+            let found = self.steps.step(at, base, weight, Changes::default())?;
+            let Some((proposal, _)) = found else { return Ok(Answer::Silent) };
+            if at.trusts_restoring(proposal.step_length) {
+                return Ok(Answer::trial(proposal));
+            }
+            weight *= 10.0;
+        }
+        Ok(fit.step().map_or(Answer::Silent, Answer::trial))
     }
 
     /// A step from the base that is worth an evaluation, or the proof that the base is stationary; silent where there
     /// is neither.
     fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
+        if at.restoring() {
+            return self.restoring_step(at, base);
+        }
         let small = at.resolution().small();
         let mut weight = self.trust.next.weight.max(LEAST_WEIGHT);
         let (mut raised, mut last) = (false, 0.0);
+        let mut fit = WeightFit::new(at.of_pieces());
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
-                if at.restoring() {
-                    return Ok(Answer::Silent);
-                }
                 (weight, raised) = (weight * 10.0, true);
                 continue;
             };
             let promised = proposal.predicted_decrease;
-            if at.restoring() {
-                if at.trusts_restoring(proposal.step_length) {
-                    return Ok(Answer::trial(proposal));
-                }
-                weight *= 10.0;
-                continue;
-            }
             if promised > small {
-                if proposal.step_length <= self.trust.next.longest {
-                    return Ok(Answer::trial(proposal));
+                raised |= proposal.step_length > self.trust.next.longest;
+                match fit.next(proposal, self.trust.next.longest, &mut weight) {
+                    Some(proposal) => return Ok(Answer::trial(proposal)),
+                    None => continue,
                 }
-                (weight, raised) = (weight * 10.0, true);
-                continue;
             }
             let evidence = Evidence::new(at.state, at.set, &proposal);
             if let Verdict::End(termination) = verdict(at, &evidence) {
@@ -152,7 +178,7 @@ impl Composite {
             }
             last = promised;
         }
-        Ok(Answer::Silent)
+        Ok(fit.step().map_or(Answer::Silent, Answer::trial))
     }
 
     /// Whether one more step is taken to tighten the bound of a convex problem: the aggregate subgradient at a center
@@ -241,8 +267,8 @@ impl Composite {
             return Ok(self.leave(at, ending, &base));
         }
         let Some(base) = self.base.clone().filter(|_| self.trust.pass()) else { return Ok(Answer::Silent) };
-        if let Some(rejected) = self.rejected.take() {
-            if let Some(proposal) = self.correction(at, &base, &rejected)? {
+        if let Some((rejected, leaves)) = self.rejected.take() {
+            if let Some(proposal) = self.correction(at, &base, &rejected, leaves)? {
                 self.correcting = true;
                 return Ok(Answer::trial(proposal));
             }
@@ -278,6 +304,18 @@ impl Composite {
     }
 }
 
+/// Without linearizations at other points of curved constraints that give all their pieces at the center: such a
+/// linearization is one of the same piece, and cuts off where the piece curves away from it. None where nothing is to
+/// be left out, and where the violation determines the steps.
+fn with_own_pieces(at: &Position<'_>) -> Option<WorkingSet> {
+    let curved = at.outer.is_some_and(|outer| are_curved(outer, at.state.constraints.as_deref()));
+    let working = at.working.filter(|working| curved && working.of_pieces && !working.restoring())?;
+    let center = &at.state.center;
+    let mut pieces = vec![0; working.kinds.len()];
+    working.tangents.iter().filter(|own| *own.point == *center).for_each(|own| pieces[own.constraint] += 1);
+    Some(working.filtered(|own| *own.point == *center || pieces[own.constraint] < 2))
+}
+
 /// A base at a trial point, where its Jacobian is known.
 fn base_at(trial: &Trial<'_>) -> Option<Base> {
     let (point, value) = (trial.proposal.trial.clone(), trial.value);
@@ -286,7 +324,11 @@ fn base_at(trial: &Trial<'_>) -> Option<Base> {
 
 impl Proposer for Composite {
     fn propose(&mut self, at: &mut Position<'_>) -> Answer {
-        self.answer(at).unwrap_or_else(|termination| Answer::end(termination.into()))
+        let end = |termination: Termination| Answer::end(termination.into());
+        match with_own_pieces(at) {
+            Some(working) => self.answer(&mut at.within(&working)).unwrap_or_else(end),
+            None => self.answer(at).unwrap_or_else(end),
+        }
     }
 
     fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
@@ -312,10 +354,11 @@ impl Proposer for Composite {
         } else if correcting {
             self.steps.needs_curvature = true;
         } else {
-            if !at.working.is_some_and(|working| working.forces(trial.proposal.step_length)) {
+            let forced = at.working.is_some_and(|working| working.forces(trial.proposal.step_length));
+            if !forced || trial.proposal.leaves.is_some() {
                 self.trust.reject(trial.proposal);
             }
-            self.rejected = base_at(trial);
+            self.rejected = base_at(trial).map(|base| (base, trial.proposal.leaves));
         }
     }
 

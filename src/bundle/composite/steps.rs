@@ -113,10 +113,11 @@ impl Steps {
             self.weights = Some(weights_of(&model.solve(at.solver)?));
         }
         // Twice in turn, so that the weights of the outputs and the curvature formed with them fit together.
+        let kind = (constraints.is_none(), at.of_pieces() && !at.restoring());
         let mut step = None;
         for _ in 0..2 {
             let Some(weights) = &self.weights else { break };
-            let curvature = self.memory.curvature(&base.point, &all, weights, constraints.is_none(), model.norm);
+            let curvature = self.memory.curvature(&base.point, &all, weights, kind, model.norm);
             let found = CompositeModel { curvature: curvature.as_ref(), ..model }.solve(at.solver)?;
             self.weights = Some(weights_of(&found));
             step = Some(found);
@@ -179,7 +180,7 @@ fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -
         step: &trial - &state.center,
         trial,
         step_length: length,
-        predicted_decrease: if at.restoring() { step.outer_decrease } else { step.decrease },
+        predicted_decrease: if at.restoring() && !at.of_pieces() { step.outer_decrease } else { step.decrease },
         cut_change: 0.0,
         composite_aggregate: Some(aggregate),
         slack_error: slack,
@@ -195,6 +196,7 @@ fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -
         violation: 0.0,
         origin: Origin::CompositeModel,
         restores: false,
+        leaves: None,
     };
     proposal.admissible(set, state)
 }

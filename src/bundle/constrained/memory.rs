@@ -19,7 +19,7 @@ const DEGENERATE: f64 = 1e-6;
 const VANISHING: f64 = 1e-6;
 /// A penalty weight this many times larger than the multipliers ask for is lowered: it would reject steps along curved
 /// constraints.
-const MAX_PENALTY_SHARE: f64 = 20.0;
+const MAX_PENALTY_SHARE: f64 = 4.0;
 /// Tangents kept beside those of the center, and three for every variable.
 const EXTRA_TANGENTS: usize = 50;
 
@@ -410,7 +410,10 @@ impl Constraints {
     }
 
     /// Raises ρ above the sum of multipliers Σ σ_j |μ_j| of a subproblem.
-    pub(crate) fn raise_penalty(&mut self, sum: f64) {
+    pub(crate) fn raise_penalty(&mut self, sum: f64, aggregate: f64) {
+        // Where the violation forces a long step, its length drives the multipliers, in proportion to the weight.
+        let slope = self.objective_slope;
+        let sum = if slope > 0.0 { sum * slope / (slope + aggregate) } else { 0.0 };
         self.sensitivity = sum;
         if self.penalty < 1.1 * sum {
             self.penalty = 2.0 * sum;

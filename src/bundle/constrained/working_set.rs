@@ -3,6 +3,7 @@
 use super::memory::Constraints;
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
+use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 use crate::bundle::step_trust::StepTrust;
 use crate::qp::EpigraphQpSolver;
@@ -39,6 +40,10 @@ pub(crate) struct WorkingSet {
     pub kinds: Vec<ConstraintKind>,
     /// v(x̂) − s ≥ 0.
     pub reduction: f64,
+    /// The violation that the rows leave.
+    relaxation: f64,
+    /// Steps that reduce the linearized violation most for their lengths: lengths, and by how much.
+    path: Rc<Vec<(f64, f64)>>,
     /// Length of the step that the relaxation takes.
     pub forced_length: f64,
     /// The weight κ of this step.
@@ -47,6 +52,9 @@ pub(crate) struct WorkingSet {
     pub feasible: bool,
     /// Whether no direction reduces the violation.
     pub stationary: bool,
+    /// Whether a constraint has given several linearizations at the center: all pieces near its largest one, which tell
+    /// more of it than further linearizations elsewhere.
+    pub of_pieces: bool,
     /// Whether the constraints are inequalities of which no linearization proves one nonconvex.
     pub convex: bool,
 }
@@ -92,8 +100,41 @@ impl WorkingSet {
             tangents: Rc::new(kept.iter().map(|&i| self.tangents[i].clone()).collect()),
             units: self.units.clone(),
             kinds: self.kinds.clone(),
+            path: Rc::clone(&self.path),
             ..*self
         }
+    }
+
+    /// Σ |μ_j| of the rows of the linearizations at a proposal.
+    pub(crate) fn multipliers(&self, proposal: &Proposal) -> f64 {
+        proposal.row_multipliers.iter().skip(self.own_rows).map(|multiplier| multiplier.abs()).sum()
+    }
+
+    /// The set with rows that leave another violation s.
+    pub(crate) fn leaving(&self, left: f64) -> Self {
+        Self {
+            set: self.set.with_tangents_relaxed(left - self.relaxation),
+            relaxation: left,
+            reduction: self.reduction + self.relaxation - left,
+            tangents: Rc::clone(&self.tangents),
+            units: self.units.clone(),
+            kinds: self.kinds.clone(),
+            path: Rc::clone(&self.path),
+            ..*self
+        }
+    }
+
+    /// By how much a step of this length can reduce the linearized violation, linearly between the steps of the
+    /// relaxation.
+    pub(crate) fn reducible(&self, length: f64) -> f64 {
+        let mut from = (0.0, 0.0);
+        for &to in self.path.iter() {
+            if length <= to.0 {
+                return from.1 + (length - from.0) / (to.0 - from.0) * (to.1 - from.1);
+            }
+            from = to;
+        }
+        from.1
     }
 
     /// The set with the linearizations at a trial point that has not become the center: a step from there may leave as
@@ -114,6 +155,7 @@ impl WorkingSet {
             tangents: Rc::new(tangents),
             units: self.units.clone(),
             kinds: self.kinds.clone(),
+            path: Rc::clone(&self.path),
             ..*self
         })
     }
@@ -135,13 +177,14 @@ impl WorkingSet {
         let mut seen = seen_from(constraints, center, norm);
         let (violation, excess) = (constraints.center_violation(), constraints.center_excess());
         let mut restoring = Restoring { left: violation, stationary: false, length: 0.0, weight: 0.0 };
+        let mut path = vec![];
         let costly = constraints.sensitivity * violation > negligible;
         if excess > 1e-3 || costly {
-            restoring = relax(set, constraints, &seen, reach, center, norm, solver);
+            (restoring, path) = relax(set, constraints, &seen, reach, center, norm, solver);
             if restoring.stationary && seen.iter().any(|seen| !seen.holds) {
                 // Linearizations at other points prove nothing where a constraint is not convex.
                 seen.retain(|seen| seen.holds);
-                restoring = relax(set, constraints, &seen, reach, center, norm, solver);
+                (restoring, path) = relax(set, constraints, &seen, reach, center, norm, solver);
             }
         }
         // The rows keep a common point in the rounding of the subproblem.
@@ -161,15 +204,25 @@ impl WorkingSet {
             tangents: Rc::new(seen.iter().map(|seen| (*seen.tangent).clone()).collect()),
             units: (0..constraints.kinds().len()).map(|j| constraints.unit(j)).collect(),
             kinds: constraints.kinds().to_vec(),
+            relaxation,
+            path: Rc::new(path),
             forced_length: restoring.length,
             restoring_weight: restoring.weight,
             reduction: (violation - relaxation).max(0.0),
             feasible: excess <= 1.0 && !costly,
             stationary: restoring.stationary && excess > 1.0,
+            of_pieces: has_pieces(constraints.tangents().0),
             convex: !constraints.nonconvex().contains(&true)
                 && !constraints.kinds().contains(&ConstraintKind::SmoothEquality),
         }
     }
+}
+
+/// Whether a constraint has several linearizations among those at the center.
+fn has_pieces(own: &[Tangent]) -> bool {
+    let mut of: Vec<usize> = own.iter().map(|tangent| tangent.constraint).collect();
+    of.sort_unstable();
+    of.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// The linearizations that can matter, in σ. One at another point never lies above the constraint at the center.
@@ -253,7 +306,8 @@ fn below(violation: f64, seen: &[Seen<'_>], dimension: usize) -> (Vec<Vector>, V
     (slopes, offsets)
 }
 
-/// The step that reduces the violation: min over d of max_i (level_i + ⟨h_i, d⟩) + κ‖d‖²/2, within the set.
+/// The step that reduces the violation: min over d of max_i (level_i + ⟨h_i, d⟩) + κ‖d‖²/2, within the set; with the
+/// steps for other κ, longer and longer, and by how much they reduce it.
 fn relax(
     set: &Polyhedron,
     constraints: &Constraints,
@@ -262,7 +316,7 @@ fn relax(
     center: &Vector,
     norm: &ScaledNorm,
     solver: &mut EpigraphQpSolver,
-) -> Restoring {
+) -> (Restoring, Vec<(f64, f64)>) {
     let (violation, trust) = (constraints.center_violation(), constraints.restoring);
     let longest = trust.map_or(f64::INFINITY, |trust| trust.longest);
     let (slopes, offsets) = below(violation, seen, center.len());
@@ -273,19 +327,19 @@ fn relax(
     let first_weight = WEIGHT * if slope > 0.0 { slope * slope } else { 1.0 } / violation;
     let mut weight = trust.map_or(first_weight, |trust| trust.weight);
     let mut best = Restoring { left: violation, stationary: false, length: 0.0, weight };
-    let mut first = true;
+    let (mut first, mut path): (bool, Vec<(f64, f64)>) = (true, vec![]);
     for _ in 0..MAX_WEIGHTS {
         let metric = norm.weighted(weight);
-        let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else { return best };
+        let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else { break };
         let length = norm.length(&solution.step);
         // The linearized violation falls by no more than this within reach.
         let error: f64 = offsets.iter().zip(&solution.cut_multipliers).map(|(a, m)| m * a).sum();
         if error + weight * length * reach <= STATIONARY * violation {
-            return Restoring { stationary: true, ..best };
+            return (Restoring { stationary: true, ..best }, path);
         }
         if length > longest {
             if best.left < violation {
-                return best;
+                break;
             }
             weight *= 10.0;
             continue;
@@ -296,6 +350,9 @@ fn relax(
         };
         let left = seen.iter().map(level).fold(0.0, f64::max).min(violation);
         let gained = best.left - left;
+        if path.last().is_none_or(|last| length > last.0 && violation - left > last.1) {
+            path.push((length, violation - left));
+        }
         if gained > 0.0 {
             best = Restoring { left, stationary: false, length, weight };
         }
@@ -304,10 +361,10 @@ fn relax(
         let falls = best.left < (1.0 - LEAST_SHARE) * violation;
         let enough = best.left <= 0.1 * violation || trust.is_some() && falls;
         if enough || !first && falls && gained <= 0.1 * best.left {
-            return best;
+            break;
         }
         first = false;
         weight /= 10.0;
     }
-    best
+    (best, path)
 }

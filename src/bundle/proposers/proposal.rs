@@ -49,6 +49,9 @@ pub(crate) struct Proposal {
     pub origin: Origin,
     /// Whether most of the predicted decrease is that of the violation: it says nothing about the weight.
     pub restores: bool,
+    /// The violation that the step leaves by the linearizations, where its model weighs it against the objective; the
+    /// predicted decrease is that of the merit then.
+    pub leaves: Option<f64>,
 }
 
 /// Trial points violate the set by at most this much, relative to each side, or by as much as the center does.

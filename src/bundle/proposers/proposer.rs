@@ -92,6 +92,11 @@ impl Position<'_> {
         })
     }
 
+    /// Whether a constraint gives several pieces at the center.
+    pub(crate) fn of_pieces(&self) -> bool {
+        self.working.is_some_and(|working| working.of_pieces)
+    }
+
     /// Whether the center violates nonlinear constraints.
     pub(crate) fn restoring(&self) -> bool {
         self.working.is_some_and(WorkingSet::restoring)

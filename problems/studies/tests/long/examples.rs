@@ -31,13 +31,13 @@ fn reaches(scene: &str, objective: f64, most_evaluations: u64) {
     assert!(run["evaluations"].as_u64() <= Some(most_evaluations), "{scene}: {}", run["evaluations"]);
 }
 
-/// The page states a tolerance of a hundredth, and 21.1 MPa for the fourth root of the mean.
+/// The page states a tolerance of a hundredth.
 #[test]
 fn the_seat_of_the_bracket_is_proved() {
     let run = optimized("bracket");
     let found = run["objective"].as_f64().unwrap();
     // Another path may end a little lower or higher.
-    assert!(found < 6.3e8 && run["objective_start"].as_f64() > Some(9.1e10), "{found}");
+    assert!(found < 4.5e8 && run["objective_start"].as_f64() > Some(9.1e10), "{found}");
     assert!(run["evaluations"].as_u64() <= Some(40), "{}", run["evaluations"]);
 }
 

@@ -158,5 +158,6 @@ fn interpret(mut solution: QpSolution, state: &BundleState, set: &Polyhedron, mo
         violation: 0.0,
         origin: Origin::Cuts,
         restores: false,
+        leaves: None,
     }
 }
