@@ -216,7 +216,7 @@ impl ContactShape {
     }
 
     /// Tangents of a state for a change of every control by 1, in their order: all that Jacobians of outputs and rows
-    /// of [pieces](crate::cost::FieldPiece::row) need. Their products count among those of the state.
+    /// of [pieces](crate::cost::StatePiece::row) need. Their products count among those of the state.
     ///
     /// # Errors
     /// [`OracleError`] when the linearized problems have no solution.
