@@ -68,7 +68,7 @@ fn shapes_within_peak_limits_are_proved() {
     }
 }
 
-/// A flat block on a rigid ball: the peak pressure of the start is three times the limit, and less volume does not
+/// A flat block on a rigid ball: the peak pressure of the start is far beyond the limit, and less volume does not
 /// lower it.
 const BLOCK_ON_BALL: &str = r#"
 name = "block on a ball"

@@ -137,9 +137,29 @@ fn reports_that_mean_nothing_are_refused_by_their_field() {
         ("report=[{quantity=\"mass\"}]", "material.density"),
         ("report=[{quantity=\"slip\"}, {quantity=\"slip\"}]", "report[1].label"),
         ("report=[{quantity=\"slip\", case=\"left\"}]", "report[0].case"),
+        ("report=[{quantity=\"reaction\", region={face=\"x1-min\", x3=[0.0, 1.0]}}]", "report[0].region"),
         ("limit=[{quantity=\"closed-area\", at_least=3}]", "limit[0].quantity"),
         ("report=[{quantity=\"displacement\", relative_to={face=\"nose\"}}]", "relative_to.face"),
     ] {
         refused(contact3d(), &[&scene, "evaluate", "--set", setting], &[words]);
     }
+}
+
+/// Glued faces have forces, but neither pressures nor slips.
+#[test]
+fn glued_contacts_have_forces_alone() {
+    let scene = format!("{}/scenes/stack.toml", env!("CARGO_MANIFEST_DIR"));
+    let evaluated = |quantity: &str| {
+        let report = format!("report=[{{quantity=\"{quantity}\", contact=1}}]");
+        ["evaluate", "--json", "--set", "contact[1].tied=true", "--set", &report].map(str::to_owned)
+    };
+    for quantity in ["mean-pressure", "closed-area", "slip", "friction-work"] {
+        let words = evaluated(quantity);
+        let words: Vec<&str> = std::iter::once(scene.as_str()).chain(words.iter().map(String::as_str)).collect();
+        refused(contact3d(), &words, &["report[0].contact = 1", "glued faces neither slide nor open"]);
+    }
+    let words = evaluated("contact-force");
+    let words: Vec<&str> = std::iter::once(scene.as_str()).chain(words.iter().map(String::as_str)).collect();
+    let found = json(contact3d(), &words);
+    assert!(number(&found["reports"][0]["end"]) > 0.0, "{}", found["reports"]);
 }

@@ -10,7 +10,7 @@
 
 use super::base::Base;
 use super::steps::{Changes, Steps};
-use crate::bundle::constrained::WorkingSet;
+use crate::bundle::constrained::{ROOM, WorkingSet};
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Position;
 use crate::report::Termination;
@@ -23,8 +23,6 @@ const RAISE: f64 = 4.0;
 const MAX_PENALTIES: usize = 30;
 /// Violations tried for one penalty.
 const MAX_TRIALS: usize = 8;
-/// Least violation left, over that of the center: the rows keep a common point in the rounding of the subproblem.
-const LEAST: f64 = 1e-6;
 /// Two violations left are equal within this share of the reduction.
 const SAME: f64 = 0.05;
 
@@ -96,7 +94,7 @@ pub(super) fn elastic(
     let (violation, known) = (at.state.violation(), at.state.constraints.as_ref());
     let mut penalty = known.map_or(1.0, |constraints| constraints.penalty);
     let mut search = Search { steps, base, working, weight, violation, tried: vec![] };
-    search.attempt(at, LEAST * violation)?;
+    search.attempt(at, ROOM * violation)?;
     if penalty == 0.0 {
         // Where the objective has no slope, the first multipliers give the penalty its unit.
         search.attempt(at, 0.5 * violation)?;

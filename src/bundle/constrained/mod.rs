@@ -17,4 +17,4 @@ mod working_set;
 
 pub(crate) use memory::Constraints;
 pub(crate) use tangent::Tangent;
-pub(crate) use working_set::WorkingSet;
+pub(crate) use working_set::{ROOM, WorkingSet};

@@ -21,7 +21,7 @@ const LEAST_SHARE: f64 = 0.01;
 /// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
 const MAX_RELATIVE_SLOPE: f64 = 1e5;
 /// Share of the reduction by which the rows are relaxed beyond what is possible.
-const ROOM: f64 = 1e-6;
+pub(crate) const ROOM: f64 = 1e-6;
 /// The violation is stationary where its linearization falls by at most this share within reach.
 const STATIONARY: f64 = 1e-6;
 

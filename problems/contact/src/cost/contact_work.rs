@@ -7,14 +7,15 @@
 //! rotation.
 
 use crate::cost::piece::StateGradient;
-use crate::cost::row_terms::{RowTerms, dot};
+use crate::cost::row_terms::RowTerms;
 use crate::cost::state_view::StateView;
 use crate::equilibrium::problem::add_at;
 use crate::equilibrium::row_work::NodeValues;
 use crate::equilibrium::{ContactProblem, ContactStatus};
+use crate::mortar::vector::{cross, dot, length, plus};
 use std::ops::Range;
 
-/// The contact nodes of a contact, or of all.
+/// The contact nodes of a contact, or of all whose sides may part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct ContactNodes(pub Range<usize>);
 
@@ -34,9 +35,12 @@ impl ContactNodes {
         self.0.contains(&index)
     }
 
-    /// Those of them that may open.
-    pub fn opening(&self, at: &StateView<'_>) -> Range<usize> {
-        self.0.start..self.0.end.min(at.forces.normal.len())
+    /// Leaves of numbers of all packed rows those of these nodes, without the first rows of each.
+    fn restrict(&self, problem: &ContactProblem, packed: &mut [f64], first: usize) {
+        for (index, point) in problem.boundary.points.iter().enumerate() {
+            let dropped = if self.has(index) { first } else { point.row_count() };
+            packed[point.start..point.start + dropped].fill(0.0);
+        }
     }
 
     /// Σλ_N/ΣA, MPa; 0 without area.
@@ -46,18 +50,17 @@ impl ContactNodes {
     }
 
     fn force_and_area(&self, at: &StateView<'_>) -> [f64; 2] {
-        let own = self.opening(at);
-        let area = at.rows.nodes[own.clone()].iter().map(|node| node.area).sum();
-        [at.forces.normal[own].iter().sum(), area]
+        let area = at.rows.nodes[self.0.clone()].iter().map(|node| node.area).sum();
+        [at.forces.normal[self.0.clone()].iter().sum(), area]
     }
 
     /// Its derivatives.
     pub fn mean_pressure_gradient(&self, problem: &ContactProblem, at: &StateView<'_>) -> StateGradient {
-        let ([force, area], own) = (self.force_and_area(at), self.opening(at));
+        let [force, area] = self.force_and_area(at);
         let mut forces = vec![0.0; problem.boundary.row_count];
         let mut areas = vec![0.0; at.forces.normal.len()];
         if area > 0.0 {
-            for index in own {
+            for index in self.0.clone() {
                 forces[problem.boundary.points[index].start] = 1.0 / area;
                 areas[index] = -force / (area * area);
             }
@@ -68,7 +71,7 @@ impl ContactNodes {
 
     /// Σ A over those that stick or slip, mm².
     pub fn closed_area(&self, at: &StateView<'_>) -> f64 {
-        let nodes = self.opening(at).filter(|&index| at.forces.status[index] != ContactStatus::Open);
+        let nodes = self.0.clone().filter(|&index| at.forces.status[index] != ContactStatus::Open);
         nodes.map(|index| at.rows.nodes[index].area).fold(0.0, |sum, area| sum + area)
     }
 
@@ -82,21 +85,11 @@ impl ContactNodes {
     pub fn friction_work_gradient(&self, terms: RowTerms<'_>) -> StateGradient {
         let (problem, at) = (terms.problem, terms.at);
         let mut tangential = terms.forces();
-        for (index, point) in problem.boundary.points.iter().enumerate() {
-            let kept = if point.is_tied || !self.has(index) { 0 } else { point.tangents };
-            let dropped = point.row_count() - kept;
-            tangential[point.start..point.start + dropped].fill(0.0);
-        }
+        self.restrict(problem, &mut tangential, 1);
         let field = |body: usize, node: u32| at.displacement(body, node);
         let u = terms.weighted(&field);
         let mut forces = terms.products(&u);
-        for (index, point) in problem.boundary.points.iter().enumerate() {
-            if point.is_tied || !self.has(index) {
-                forces[point.rows()].fill(0.0);
-            } else {
-                forces[point.start] = 0.0;
-            }
-        }
+        self.restrict(problem, &mut forces, 1);
         let mut displacements = vec![0.0; problem.displacement_count()];
         terms.by_field(&tangential, |body, node, share| {
             let first = 3 * problem.map.number(body, node);
@@ -116,15 +109,14 @@ impl Resultant {
                 None => force,
                 Some(about) => cross(self.arm(terms, index, about), force),
             };
-            (0..3).for_each(|axis| sum[axis] -= own[axis]);
+            sum = plus(sum, -1.0, own);
         }
         sum
     }
 
     fn arm(&self, terms: RowTerms<'_>, index: usize, about: [f64; 3]) -> [f64; 3] {
         let point = &terms.problem.boundary.points[index];
-        let place = terms.at.bodies[point.body].positions[point.node as usize];
-        std::array::from_fn(|axis| place[axis] - about[axis])
+        plus(terms.at.bodies[point.body].positions[point.node as usize], -1.0, about)
     }
 
     /// The component, or the length.
@@ -137,11 +129,9 @@ impl Resultant {
         let (problem, mut packed) = (terms.problem, terms.forces());
         let along = direction(self.vector(terms, &packed), self.axis);
         let mut field = NodeValues::zeros(problem.bodies.len());
-        for (index, point) in problem.boundary.points.iter().enumerate() {
-            if !self.nodes.has(index) {
-                packed[point.rows()].fill(0.0);
-                continue;
-            }
+        self.nodes.restrict(problem, &mut packed, 0);
+        for index in self.nodes.0.clone() {
+            let point = &problem.boundary.points[index];
             let motion = match self.about {
                 None => along,
                 Some(about) => cross(along, self.arm(terms, index, about)),
@@ -149,9 +139,7 @@ impl Resultant {
             field.add_to(point.body, point.node, motion.map(|w| -w));
         }
         let mut forces = terms.products(&field);
-        for (_, point) in problem.boundary.points.iter().enumerate().filter(|(index, _)| !self.nodes.has(*index)) {
-            forces[point.rows()].fill(0.0);
-        }
+        self.nodes.restrict(problem, &mut forces, 0);
         // The motion of the slave nodes alone: masters have none, and weights of a node in its own rows do not change.
         let mut positions = terms.by_positions(&packed, &field, |_, _| [0.0; 3]);
         if self.about.is_some() {
@@ -169,7 +157,7 @@ impl Resultant {
 
 /// A component of a vector, or its length.
 pub(super) fn component(vector: [f64; 3], axis: Option<usize>) -> f64 {
-    axis.map_or_else(|| dot(vector, vector).sqrt(), |axis| vector[axis])
+    axis.map_or_else(|| length(vector), |axis| vector[axis])
 }
 
 /// The derivative of that by the vector; 0 for the length at 0, one of its subgradients.
@@ -177,12 +165,8 @@ pub(super) fn direction(vector: [f64; 3], axis: Option<usize>) -> [f64; 3] {
     match axis {
         Some(axis) => std::array::from_fn(|own| f64::from(u8::from(own == axis))),
         None => {
-            let size = dot(vector, vector).sqrt();
+            let size = length(vector);
             if size > 0.0 { vector.map(|own| own / size) } else { [0.0; 3] }
         }
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }

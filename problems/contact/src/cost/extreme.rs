@@ -7,6 +7,8 @@ use crate::cost::piece::StatePiece;
 use crate::cost::region::RegionCells;
 use crate::cost::row_terms::RowTerms;
 use crate::equilibrium::ContactProblem;
+use crate::equilibrium::row_work::NodeValues;
+use crate::mortar::vector::plus;
 use std::collections::BTreeMap;
 
 /// Distance of a value from the extreme one over the largest absolute value, up to which its point is a piece: what a
@@ -70,7 +72,8 @@ impl Extreme {
         // The sort is stable: points of equal value stay in their order.
         values.sort_by(|(a, _), (b, _)| (way * b).total_cmp(&(way * a)));
         values.truncate(most);
-        values.into_iter().map(|(value, place)| self.piece(terms, value, place)).collect()
+        let u = self.slipping(terms);
+        values.into_iter().map(|(value, place)| self.piece((terms, &u), value, place)).collect()
     }
 
     /// 1 where the largest value counts, else −1.
@@ -96,7 +99,7 @@ impl Extreme {
                 let mean = mean(terms, base);
                 let of_body = |(body, nodes): (usize, &Vec<u32>)| {
                     let of_node = |&node: &u32| {
-                        let moved = less(at.displacement(body, node), mean);
+                        let moved = plus(at.displacement(body, node), -1.0, mean);
                         (component(moved, *axis), Place { body, at: node as usize, point: 0 })
                     };
                     nodes.iter().map(of_node).collect::<Vec<_>>()
@@ -104,27 +107,35 @@ impl Extreme {
                 nodes.iter().enumerate().flat_map(of_body).collect()
             }
             Points::Slips(nodes) => {
-                let u = terms.weighted(&|body, node| at.displacement(body, node));
+                let u = self.slipping(terms);
                 let slip = |index: usize| (terms.slip(index, &u).0, Place { body: 0, at: index, point: 0 });
-                nodes.opening(&at).map(slip).collect()
+                nodes.0.clone().map(slip).collect()
             }
         }
     }
 
-    fn piece(&self, terms: RowTerms<'_>, value: f64, place: Place) -> StatePiece {
+    /// The weighted displacements of the nodes of the contact rows, where slips need them.
+    fn slipping(&self, terms: RowTerms<'_>) -> NodeValues {
+        match self.points {
+            Points::Slips(_) => terms.weighted(&|body, node| terms.at.displacement(body, node)),
+            Points::Stresses(_) | Points::Displacements { .. } => NodeValues::zeros(0),
+        }
+    }
+
+    fn piece(&self, (terms, u): (RowTerms<'_>, &NodeValues), value: f64, place: Place) -> StatePiece {
         match &self.points {
             Points::Stresses(cells) => {
                 stress_piece(terms, value, (place.body, cells.cells[place.body][place.at], place.point))
             }
             Points::Displacements { base, axis, .. } => {
                 let problem = terms.problem;
-                let moved = less(terms.at.displacement(place.body, place.at as u32), mean(terms, base));
+                let moved = plus(terms.at.displacement(place.body, place.at as u32), -1.0, mean(terms, base));
                 let along = direction(moved, *axis);
                 let own = std::iter::once((place.body, place.at as u32, 1.0));
                 let weighted = own.chain(base.iter().map(|&(body, node, weight)| (body, node, -weight)));
                 StatePiece { value, displacements: entries(problem, weighted, along), positions: Vec::new() }
             }
-            Points::Slips(_) => slip_piece(terms, value, place.at),
+            Points::Slips(_) => slip_piece((terms, u), value, place.at),
         }
     }
 }
@@ -161,11 +172,10 @@ fn stress_piece(terms: RowTerms<'_>, value: f64, (number, cell, point): (usize, 
 }
 
 /// The length of the slip of a contact node.
-fn slip_piece(terms: RowTerms<'_>, value: f64, index: usize) -> StatePiece {
-    let (problem, at) = (terms.problem, terms.at);
-    let u = terms.weighted(&|body, node| at.displacement(body, node));
+fn slip_piece((terms, u): (RowTerms<'_>, &NodeValues), value: f64, index: usize) -> StatePiece {
+    let problem = terms.problem;
     let mut displacements = BTreeMap::new();
-    let positions = terms.slip_gradient(index, &u, |body, node, share| {
+    let positions = terms.slip_gradient(index, u, |body, node, share| {
         let first = 3 * problem.map.number(body, node);
         (0..3).for_each(|axis| *displacements.entry(first + axis).or_insert(0.0) += share[axis]);
     });
@@ -176,12 +186,5 @@ fn slip_piece(terms: RowTerms<'_>, value: f64, index: usize) -> StatePiece {
 
 /// Σ weights · u over some nodes, mm.
 fn mean(terms: RowTerms<'_>, nodes: &MeanNodes) -> [f64; 3] {
-    nodes.iter().fold([0.0; 3], |sum, &(body, node, weight)| {
-        let u = terms.at.displacement(body, node);
-        std::array::from_fn(|axis| sum[axis] + weight * u[axis])
-    })
-}
-
-fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
+    nodes.iter().fold([0.0; 3], |sum, &(body, node, weight)| plus(sum, weight, terms.at.displacement(body, node)))
 }

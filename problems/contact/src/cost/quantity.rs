@@ -149,11 +149,6 @@ impl Quantity {
         *self == Self::Pressure(PressureMeasure::Peak)
     }
 
-    /// Whether its value jumps, so that it can be told, and neither be minimised nor limited.
-    pub fn jumps(&self) -> bool {
-        matches!(self, Self::ClosedArea { .. })
-    }
-
     /// Whether it is continuously differentiable where no contact node changes its status.
     pub fn is_smooth(&self) -> bool {
         match self {
@@ -193,12 +188,12 @@ impl Quantity {
         matches!(self, Self::Pressure(_))
     }
 
-    /// Refuses what jumps; `field`: what messages call the quantity.
+    /// Refuses what jumps and can be told only; `field`: what messages call the quantity.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`].
     pub fn check_differentiable(&self, field: &str) -> Result<(), SceneError> {
         let allowed = "loaded-area or open-area: the area of closed nodes jumps, and can be reported only";
-        SceneError::require(!self.jumps(), field, self.name(), allowed)
+        SceneError::require(!matches!(self, Self::ClosedArea { .. }), field, self.name(), allowed)
     }
 }

@@ -8,9 +8,9 @@ use crate::body::Body;
 use crate::body::loads::{load_sensitivities, nodal_forces};
 use crate::cost::contact_work::{component, direction};
 use crate::cost::piece::StateGradient;
-use crate::cost::row_terms::{RowTerms, dot};
+use crate::cost::row_terms::RowTerms;
 use crate::equilibrium::problem::add_at;
-use crate::linear::parallel;
+use crate::mortar::vector::{dot, plus};
 
 /// A resultant of reactions.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,37 +34,16 @@ impl Reaction {
         let mut field = vec![[0.0; 3]; body.mesh.node_count()];
         for node in body.held_nodes() {
             for (d, _) in body.held_by(node).filter(|(_, support)| self.supports.contains(support)) {
-                let share = dot(d, along);
-                (0..3).for_each(|axis| field[node as usize][axis] += share * d[axis]);
+                field[node as usize] = plus(field[node as usize], dot(d, along), d);
             }
         }
         field
     }
 
-    /// K v per node of the body for a field v, N.
-    fn internal_forces(&self, terms: RowTerms<'_>, field: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let (body, solved) = (self.body(terms), &terms.at.bodies[self.body]);
-        let of_cell = |cell: usize| {
-            let own = body.mesh.cell_values(cell, field);
-            if own.iter().all(|entry| *entry == 0.0) {
-                return Vec::new();
-            }
-            body.mesh.cell_nodes(cell, &solved.positions).forces(body.solid.material(cell), &own)
-        };
-        let cells: Vec<Vec<f64>> = parallel::map(body.mesh.cell_count(), &of_cell);
-        let mut sums = vec![[0.0; 3]; body.mesh.node_count()];
-        for (cell, forces) in body.mesh.cells().zip(&cells) {
-            for (&node, force) in cell.nodes.iter().zip(forces.as_chunks::<3>().0) {
-                add_at(&mut sums, node as usize, *force);
-            }
-        }
-        sums
-    }
-
     /// R·e.
     fn along(&self, terms: RowTerms<'_>, along: [f64; 3]) -> f64 {
         let (w, solved) = (self.field(terms, along), &terms.at.bodies[self.body]);
-        let stiff = self.internal_forces(terms, &w);
+        let stiff = self.body(terms).solid.internal_forces(&solved.positions, &w);
         let internal: f64 = stiff.iter().zip(&solved.displacement).map(|(force, u)| dot(*force, *u)).sum();
         let loads = nodal_forces(self.body(terms), &solved.positions).into_iter();
         let external: f64 = loads.map(|(node, force)| dot(force, w[node as usize])).sum();
@@ -95,7 +74,7 @@ impl Reaction {
         let along = direction(if self.axis.is_none() { self.vector(terms) } else { [0.0; 3] }, self.axis);
         let w = self.field(terms, along);
         let mut displacements = vec![0.0; problem.displacement_count()];
-        for (node, force) in self.internal_forces(terms, &w).into_iter().enumerate() {
+        for (node, force) in body.solid.internal_forces(&solved.positions, &w).into_iter().enumerate() {
             let first = 3 * problem.map.number(self.body, node as u32);
             (0..3).for_each(|axis| displacements[first + axis] = force[axis]);
         }

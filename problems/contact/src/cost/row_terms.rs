@@ -12,6 +12,7 @@ use crate::equilibrium::problem::add_at;
 use crate::equilibrium::row_work::{NodeValues, row_sensitivities, side_forces};
 use crate::equilibrium::trace_work::TraceWork;
 use crate::equilibrium::{ContactPoint, ContactProblem, NodeRows, RowSensitivities, Side};
+use crate::mortar::vector::{dot, length, plus};
 
 /// The contact rows of a state, for sums over them.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +52,7 @@ impl<'a> RowTerms<'a> {
     pub fn force(self, index: usize, packed: &[f64]) -> [f64; 3] {
         let (point, node) = (&self.problem.boundary.points[index], &self.at.rows.nodes[index]);
         let rows = point.rows().zip(directions(point, node));
-        rows.fold([0.0; 3], |sum, (row, d)| std::array::from_fn(|axis| sum[axis] + packed[row] * d[axis]))
+        rows.fold([0.0; 3], |sum, (row, d)| plus(sum, packed[row], d))
     }
 
     /// Weighted values of a field at the nodes of the sides of all rows.
@@ -114,9 +115,8 @@ impl<'a> RowTerms<'a> {
         let (point, node) = (&self.problem.boundary.points[index], &self.at.rows.nodes[index]);
         let jump = onto(&point.free, u.jump(point, &node.weights));
         let d = node.directions[0];
-        let share = dot(d, jump) / dot(d, d);
-        let slip: [f64; 3] = std::array::from_fn(|axis| jump[axis] - share * d[axis]);
-        let size = dot(slip, slip).sqrt();
+        let slip = plus(jump, -dot(d, jump) / dot(d, d), d);
+        let size = length(slip);
         (size, if size > 0.0 { slip.map(|s| s / size) } else { [0.0; 3] })
     }
 
@@ -182,8 +182,4 @@ fn acts_along_normal(point: &ContactPoint) -> bool {
 fn directions<'a>(point: &ContactPoint, node: &'a NodeRows) -> impl Iterator<Item = [f64; 3]> + 'a {
     let first = if acts_along_normal(point) { node.normal } else { node.directions[0] };
     std::iter::once(first).chain(node.directions[1..].iter().copied())
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }

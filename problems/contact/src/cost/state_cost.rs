@@ -13,12 +13,13 @@ use crate::cost::extreme::{Extreme, MeanNodes, Points};
 use crate::cost::piece::{StateGradient, StatePiece};
 use crate::cost::reaction::Reaction;
 use crate::cost::region::{Region, RegionCells};
-use crate::cost::row_terms::{RowTerms, dot};
+use crate::cost::row_terms::RowTerms;
 use crate::cost::state_view::StateView;
 use crate::cost::stress_norm::StressNorm;
 use crate::cost::{PressureCost, PressureMeasure, Quantity};
 use crate::equilibrium::ContactProblem;
 use crate::error::SceneError;
+use crate::mortar::vector::dot;
 use crate::names::find;
 use nonsmooth::Vector;
 use nonsmooth::composite::OuterFunction;
@@ -59,7 +60,7 @@ impl StateCost {
             return Ok(None);
         }
         check_numbers(place, quantity)?;
-        let nodes = |contact: Option<usize>| contact_nodes(place, contact, problem);
+        let nodes = |contact: Option<usize>| opening_nodes(place, contact, problem);
         let function = match quantity {
             Quantity::Pressure(measure) => Function::Pressures(PressureCost::named(place, measure.clone(), problem)?),
             &Quantity::LoadedArea { pressure } => {
@@ -69,11 +70,11 @@ impl StateCost {
             Quantity::MeanPressure { contact } => Function::MeanPressure(nodes(*contact)?),
             Quantity::ClosedArea { contact } => Function::ClosedArea(nodes(*contact)?),
             Quantity::ContactForce { contact, axis } => {
-                let nodes = nodes(Some(only_contact(place, *contact, problem)?))?;
+                let nodes = nodes_of_one(place, *contact, problem)?;
                 Function::Resultant(Resultant { nodes, axis: *axis, about: None })
             }
             Quantity::ContactMoment { contact, axis, about } => {
-                let nodes = nodes(Some(only_contact(place, *contact, problem)?))?;
+                let nodes = nodes_of_one(place, *contact, problem)?;
                 Function::Resultant(Resultant { nodes, axis: *axis, about: Some(*about) })
             }
             Quantity::FrictionWork { contact } => Function::FrictionWork(nodes(*contact)?),
@@ -101,11 +102,6 @@ impl StateCost {
             Quantity::Volume | Quantity::RelativeVolume | Quantity::Mass => return Ok(None),
         };
         Ok(Some(Self { quantity: quantity.clone(), function }))
-    }
-
-    /// What it measures.
-    pub fn quantity(&self) -> &Quantity {
-        &self.quantity
     }
 
     /// Whether states need the displacements of the bodies.
@@ -145,8 +141,8 @@ impl StateCost {
     }
 
     /// The derivatives of J at a state: of a maximum or minimum over points those of the first extreme one, which is
-    /// one subgradient of a maximum of such functions. Without the displacements that it needs, and for what
-    /// [jumps](Quantity::jumps), 0.
+    /// one subgradient of a maximum of such functions. Without the displacements that it needs, and for a closed
+    /// area, which jumps, 0.
     pub fn gradient(&self, problem: &ContactProblem, at: StateView<'_>) -> StateGradient {
         if self.needs_displacements() && at.bodies.is_empty() {
             return StateGradient::default();
@@ -222,30 +218,38 @@ fn check_numbers(place: &str, quantity: &Quantity) -> Result<(), SceneError> {
     }
 }
 
-/// The nodes of a contact, or of all.
-fn contact_nodes(place: &str, contact: Option<usize>, problem: &ContactProblem) -> Result<ContactNodes, SceneError> {
-    let count = problem.scene.contacts.len();
-    match contact {
-        None => Ok(ContactNodes(0..problem.boundary.contact_points().len())),
-        Some(contact) => {
-            let allowed = format!("the place of a contact of the scene, from 0 to {}", count.saturating_sub(1));
-            SceneError::require(contact < count, format!("{place}.contact"), contact, &allowed)?;
-            Ok(ContactNodes(problem.boundary.of_contact(contact)))
-        }
-    }
+/// The nodes of a contact whose sides may part, or of all such contacts.
+fn opening_nodes(place: &str, contact: Option<usize>, problem: &ContactProblem) -> Result<ContactNodes, SceneError> {
+    let (field, allowed) =
+        (format!("{place}.contact"), "a contact whose sides may part: glued faces neither slide nor open");
+    let opening = problem.boundary.contact_points().len();
+    let Some(contact) = contact else {
+        SceneError::require(opening > 0, field, "none that may part", allowed)?;
+        return Ok(ContactNodes(0..opening));
+    };
+    let nodes = nodes_of(place, contact, problem)?;
+    SceneError::require(!problem.scene.contacts[contact].is_tied(), field, contact, allowed)?;
+    Ok(nodes)
 }
 
-/// The contact of a resultant: the one that is named, or the only one.
-fn only_contact(place: &str, contact: Option<usize>, problem: &ContactProblem) -> Result<usize, SceneError> {
-    let count = problem.scene.contacts.len();
-    match contact {
-        Some(contact) => Ok(contact),
-        None if count == 1 => Ok(0),
-        None => {
+/// The nodes of the contact of a resultant: the one that is named, or the only one.
+fn nodes_of_one(place: &str, contact: Option<usize>, problem: &ContactProblem) -> Result<ContactNodes, SceneError> {
+    match (contact, problem.scene.contacts.len()) {
+        (Some(contact), _) => nodes_of(place, contact, problem),
+        (None, 1) => nodes_of(place, 0, problem),
+        (None, count) => {
             let allowed = format!("the place of one of the {count} contacts, from 0: each has a resultant of its own");
             Err(SceneError::out_of_range(format!("{place}.contact"), "missing", allowed))
         }
     }
+}
+
+/// The nodes of a contact.
+fn nodes_of(place: &str, contact: usize, problem: &ContactProblem) -> Result<ContactNodes, SceneError> {
+    let count = problem.scene.contacts.len();
+    let allowed = format!("the place of a contact of the scene, from 0 to {}", count.saturating_sub(1));
+    SceneError::require(contact < count, format!("{place}.contact"), contact, &allowed)?;
+    Ok(ContactNodes(problem.boundary.of_contact(contact)))
 }
 
 /// The supports of a face.
@@ -259,6 +263,9 @@ fn reaction(
     let Some(face) = &region.face else {
         return Err(SceneError::out_of_range(field, "missing", "the face of a support"));
     };
+    let whole = Region { body: region.body.clone(), face: region.face.clone(), ..Region::WHOLE };
+    let allowed = "a face, and its body: a reaction is that of whole supports";
+    SceneError::require(*region == whole, format!("{place}.region"), "bounds or a volume", allowed)?;
     if let Some(body) = &region.body {
         find(&format!("{place}.region.body"), body, problem.bodies.iter().map(|body| body.name.as_str()))?;
     }

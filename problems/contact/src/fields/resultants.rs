@@ -105,7 +105,7 @@ fn of_body(
     contact: (&ContactRows, &ContactForces),
 ) -> BodyResultants {
     let body = &problem.bodies[number];
-    let mut rest = internal_forces(body, solved);
+    let mut rest = body.solid.internal_forces(&solved.positions, &solved.displacement);
     let (mut loads, mut contacts) = ([0.0; 3], [0.0; 3]);
     for (node, force) in nodal_forces(body, &solved.positions) {
         add(&mut loads, 1.0, force);
@@ -127,22 +127,6 @@ fn of_body(
         }
     }
     BodyResultants { body: body.name.clone(), loads, contact: contacts, friction_of_held, supports }
-}
-
-/// K u per node, N.
-fn internal_forces(body: &Body, solved: &SolvedBody) -> Vec<[f64; 3]> {
-    let of_cell = |cell: usize| {
-        let u = solved.mesh.cell_values(cell, &solved.displacement);
-        solved.mesh.cell_nodes(cell, &solved.positions).forces(body.solid.material(cell), &u)
-    };
-    let cells: Vec<Vec<f64>> = parallel::map(solved.mesh.cell_count(), &of_cell);
-    let mut sums = vec![[0.0; 3]; solved.mesh.node_count()];
-    for (cell, forces) in solved.mesh.cells().zip(&cells) {
-        for (&node, force) in cell.nodes.iter().zip(forces.as_chunks::<3>().0) {
-            add(&mut sums[node as usize], 1.0, *force);
-        }
-    }
-    sums
 }
 
 /// Contact forces on the weighted displacements of the nodes of a body, N.

@@ -4,7 +4,7 @@ use crate::setting::{body, boxed, lattice, symmetric};
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{NodeWeight, PressureMeasure, Quantity};
-use contact::scene::{BodyFace, ContactScene, Load, Master, Scene, Support};
+use contact::scene::{BodyFace, ContactKind, ContactScene, Load, Master, Scene, Support};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
 /// A tower of three boxes of different grids; controls shape the middle and the upper one.
@@ -55,15 +55,36 @@ fn both_solvers_find_the_same_state_in_equilibrium() {
     }
 }
 
+/// The tower, and with its upper bodies glued.
+fn towers() -> [Scene; 2] {
+    let mut glued = tower(0.05);
+    glued.contacts[1] = ContactScene { kind: ContactKind::Tied, friction: 0.0, ..glued.contacts[1].clone() };
+    [tower(0.05), glued]
+}
+
 #[test]
 fn subgradients_are_those_of_differences() {
+    let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
+    let [parting, glued] = towers();
+    for (scene, quantity) in [
+        (&parting, Quantity::Pressure(norm)),
+        (&parting, Quantity::MeanPressure { contact: Some(1) }),
+        (&parting, Quantity::FrictionWork { contact: Some(0) }),
+        (&parting, Quantity::ContactForce { contact: Some(1), axis: Some(1) }),
+        (&glued, Quantity::ContactForce { contact: Some(1), axis: Some(0) }),
+        (&glued, Quantity::ContactMoment { contact: Some(1), axis: None, about: [1.0, 2.0, 9.0] }),
+        (&glued, Quantity::FrictionWork { contact: None }),
+    ] {
+        differentiated(scene, &quantity);
+    }
+}
+
+fn differentiated(scene: &Scene, quantity: &Quantity) {
     for kind in [SolverKind::Direct, SolverKind::Newton] {
-        let scene = tower(0.05);
         let shape = ContactShape::new(scene.clone(), kind).unwrap();
-        let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Area };
-        let objective = ContactObjective::new(shape, Quantity::Pressure(norm), &[]).unwrap();
+        let objective = ContactObjective::new(shape, quantity.clone(), &[]).unwrap();
         let solve = |control: &Vector| objective.cases().solve(control, None, Accuracy::TIGHTEST).unwrap();
-        let (at, step) = (at(&scene), 2e-5);
+        let (at, step) = (at(scene), 2e-5);
         let here = solve(&at);
         let direction = Vector::from_fn(at.len(), |k, _| (k as f64 + 1.0).sin());
         let slope = objective.differentiate(&at, &here).unwrap().subgradient.dot(&direction);
@@ -73,7 +94,7 @@ fn subgradients_are_those_of_differences() {
             objective.value(&there)
         };
         let quotient = (8.0 * (value(1.0) - value(-1.0)) - (value(2.0) - value(-2.0))) / (12.0 * step);
-        println!("{kind:?}: {:e}", slope / quotient - 1.0);
-        assert!((slope / quotient - 1.0).abs() < 1e-6, "{kind:?}: {slope} {quotient}");
+        println!("{kind:?}, {quantity:?}: {:e}", slope / quotient - 1.0);
+        assert!((slope / quotient - 1.0).abs() < 1e-6, "{kind:?}, {quantity:?}: {slope} {quotient}");
     }
 }
