@@ -14,23 +14,41 @@ pub struct Factored<F> {
     pub factors: F,
 }
 
-/// Factors by what they depend on beside the positions.
+/// Factors by what they depend on beside the positions, and the keys of all solvers.
 #[derive(Debug)]
-pub struct Shelf<K, F>(Mutex<Vec<Entry<K, F>>>);
+pub struct Shelf<K, F> {
+    entries: Mutex<Vec<Entry<K, F>>>,
+    keys: Mutex<Vec<Weak<K>>>,
+}
 
 /// The key of some factors, and the factors while they are in use.
 type Entry<K, F> = (Arc<K>, Weak<Factored<F>>);
 
 impl<K, F> Default for Shelf<K, F> {
     fn default() -> Self {
-        Self(Mutex::default())
+        Self { entries: Mutex::default(), keys: Mutex::default() }
+    }
+}
+
+impl<K, F> Shelf<K, F> {
+    /// The key of another solver that is what is looked for.
+    pub fn key(&self, is_same: impl Fn(&K) -> bool) -> Option<Arc<K>> {
+        let keys = self.keys.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        keys.iter().filter_map(Weak::upgrade).find(|key| is_same(key))
+    }
+
+    /// Lets others find a key.
+    pub fn put_key(&self, key: &Arc<K>) {
+        let mut keys = self.keys.lock().unwrap_or_else(PoisonError::into_inner);
+        keys.retain(|key| key.strong_count() > 0);
+        keys.push(Arc::downgrade(key));
     }
 }
 
 impl<K: PartialEq, F> Shelf<K, F> {
     fn entries(&self) -> MutexGuard<'_, Vec<Entry<K, F>>> {
         // The list is whole after every change of it.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The factors of a key at positions that are equal bit by bit, where somebody holds them.

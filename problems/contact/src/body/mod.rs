@@ -24,7 +24,6 @@ mod trace;
 pub use body::Body;
 pub use loads::load_size;
 pub(crate) use nodal_axes::NodalAxes;
-pub(crate) use piece::lower_pattern;
 pub use piece::{Patterns, Piece, PiecePattern};
 pub use rigid_motions::{MOTIONS, rigid_motions};
 pub use solid::Solid;

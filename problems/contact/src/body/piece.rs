@@ -189,28 +189,19 @@ impl PiecePattern {
         (0..dimension).map(|column| values[starts[column]]).sum::<f64>() / dimension as f64
     }
 
-    /// The neighbours of every node.
-    pub(crate) fn graph(&self) -> &[Vec<u32>] {
-        &self.graph
-    }
-
     /// Elimination order of the dofs by nested dissection, with those of `last` nodes at the end.
     pub fn elimination_order(&self, last: &[usize]) -> Vec<usize> {
-        self.elimination_order_of(&self.graph, last)
-    }
-
-    fn elimination_order_of(&self, graph: &[Vec<u32>], last: &[usize]) -> Vec<usize> {
         let mut chained;
         let graph = if last.len() > 1 {
             // A chain keeps the last nodes in place in the elimination tree, whatever fill couples them.
-            chained = graph.to_vec();
+            chained = self.graph.clone();
             for pair in last.windows(2) {
                 chained[pair[0]].push(narrow(pair[1]));
                 chained[pair[1]].push(narrow(pair[0]));
             }
             &chained
         } else {
-            graph
+            &self.graph
         };
         let nodes = nested_dissection(&self.points, graph, last);
         nodes.into_iter().flat_map(|node| 3 * node..3 * node + 3).collect()
@@ -223,22 +214,10 @@ impl PiecePattern {
     pub fn symbolic(&self, last: &[usize]) -> Result<Arc<SymbolicFactor>, FactorizationError> {
         Ok(Arc::new(SymbolicFactor::new(Arc::clone(&self.lower), self.elimination_order(last))?))
     }
-
-    /// The symbolic factor of a matrix that couples more nodes, over its pattern and the neighbours of its nodes.
-    ///
-    /// # Errors
-    /// [`FactorizationError`] when the analysis fails.
-    pub(crate) fn symbolic_of(
-        &self,
-        (lower, graph): (&Arc<LowerPattern>, &[Vec<u32>]),
-        last: &[usize],
-    ) -> Result<Arc<SymbolicFactor>, FactorizationError> {
-        Ok(Arc::new(SymbolicFactor::new(Arc::clone(lower), self.elimination_order_of(graph, last))?))
-    }
 }
 
 /// The lower triangle over three dofs per node.
-pub(crate) fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
+fn lower_pattern(graph: &[Vec<u32>]) -> LowerPattern {
     let mut columns = Vec::with_capacity(3 * graph.len());
     for (node, neighbours) in graph.iter().enumerate() {
         let later = neighbours.iter().map(|&other| other as usize).filter(|&other| other > node);

@@ -69,9 +69,9 @@ impl CompliantContact {
         let boundary = &problem.boundary;
         let count = boundary.row_count;
         let mut compliance = Mat::<f64>::zeros(count, count);
-        let mut constant = rows.prescribed_approaches(boundary);
+        let mut constant = rows.prescribed_approaches(boundary, &problem.bodies);
         for ContactBody { body, load, rows } in &bodies {
-            rows.add_compliance(&body.factors.compliance, &mut compliance);
+            rows.add_compliance(body.factors.compliance(), &mut compliance);
             rows.add_jumps(&load.free, 1.0, &mut constant);
         }
         for column in 0..count {
@@ -180,30 +180,25 @@ impl CompliantContact {
         (forces, displacements)
     }
 
-    /// Unknowns near given contact displacements of all bodies of a similar shape, mm.
-    pub fn unknowns_near(&self, displacements: &[f64]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.row_count()];
-        let mut own = Vec::new();
-        let mut first = 0;
-        for ContactBody { body, load, rows } in &self.bodies {
-            let (body, load) = (&body.factors, &load.contact);
-            let u = &displacements[first..first + load.len()];
-            first += u.len();
-            own.extend(body.motions.iter().map(|motion| dot(motion, u) / (self.unit * self.load)));
-            let mut reaction = load.clone();
-            add_scaled(&mut reaction, -1.0, &multiply(&body.condensed.schur, u));
-            for (row, force) in forces.iter_mut().enumerate() {
-                let entries = rows.row(row);
-                let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
-                if square > 0.0 {
-                    *force =
-                        entries.iter().map(|(dof, value)| value * reaction[*dof]).sum::<f64>() / (square * self.load);
-                }
-            }
-        }
-        let amplitudes = &self.inverse_basis * DVector::from_vec(own);
-        forces.extend(amplitudes.iter());
-        forces
+    /// Forces, N, and amplitudes of the bodies' own motions, mm, of given unknowns: what a similar shape begins with.
+    pub(super) fn own_unknowns(&self, unknowns: &[f64]) -> Vec<f64> {
+        let (forces, amplitudes) = unknowns.split_at(self.row_count());
+        let amplitudes: Vec<f64> =
+            amplitudes.iter().zip(&self.placement.offset).map(|(a, offset)| a + offset).collect();
+        let own = self.own_amplitudes(&amplitudes, self.unit * self.load);
+        forces.iter().map(|force| force * self.load).chain(own.into_iter().flatten()).collect()
+    }
+
+    /// Unknowns from the [`own_unknowns`](Self::own_unknowns) of a similar shape; none of another number.
+    pub(super) fn unknowns_near(&self, own: &[f64]) -> Option<Vec<f64>> {
+        let (forces, amplitudes) = own.split_at_checked(self.row_count())?;
+        let scaled = amplitudes.iter().map(|amplitude| amplitude / (self.unit * self.load));
+        let scaled: Vec<f64> = scaled.collect();
+        let forces = forces.iter().map(|force| force / self.load);
+        (scaled.len() == self.inverse_basis.ncols()).then(|| {
+            let amplitudes = &self.inverse_basis * DVector::from_vec(scaled);
+            forces.chain(amplitudes.iter().copied()).collect()
+        })
     }
 }
 

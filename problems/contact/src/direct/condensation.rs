@@ -1,29 +1,38 @@
-//! One body condensed onto its contact nodes by a sparse Cholesky factorisation with the contact dofs last.
+//! One body condensed onto its contact nodes by a sparse Cholesky factorisation, with the rows of the contact nodes as
+//! its border.
 //!
 //! ```text
-//! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f̂_c = (S + σ I) x_c with (K + σ I_c) x = f
-//! prescribed u_D:     u = u_D + v,  v = 0 at held dofs,  K v = (f − K u_D) − Bᵀλ;   forces and displacements: of v
+//! K̂ = K + σ BᵀB (foundation)  or  K + ρ Σ_i e_i e_iᵀ (springs),    Ĉ = B K̂⁻¹ Bᵀ,    w = B u
+//! prescribed u_D:   u = u_D + v,  v = 0 at held dofs,  K v = (f − K u_D) − Bᵀλ;      displacements: of v
 //! ```
-//! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly. All is
-//! computed in the [`Coordinates`] of the body.
+//! B: the displacements w that contact rows see ([`Trace`](crate::body::Trace)), three rows per contact node, 0 at held
+//! dofs. Where w are the displacements of the contact nodes themselves, an elastic foundation under them makes K
+//! regular; it keeps the digits of bodies that bend as easily as bricks of extreme proportions let them. Elsewhere BᵀB
+//! would couple many nodes: one spring per rigid motion that the supports leave free, at single dofs far from each
+//! other, holds the body, and loads in equilibrium put no force on it. All is computed in the coordinates of the nodes
+//! in which supports hold axes ([`NodalAxes`]).
 
+use crate::body::elasticity::Material;
 use crate::body::loads::piece_loads;
-use crate::body::{Body, Piece, TraceWeights};
-use crate::direct::coordinates::Coordinates;
+use crate::body::{Body, NodalAxes, Piece, TraceWeights};
+use crate::equilibrium::STIFFNESS_SHARE;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
-use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::add_scaled;
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::{Accum, Mat, Par};
+use faer::Mat;
+use nalgebra::Matrix3;
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Sizes of the rows of the motions that differ by rounding.
+const EQUAL_SIZES: f64 = 1e-9;
 
 /// What all shapes of a body share.
 #[derive(Debug)]
 pub struct CondensationPattern {
     /// The whole body.
     pub(super) piece: Piece,
-    pub(super) coordinates: Coordinates,
+    pub(super) axes: NodalAxes,
     symbolic: Arc<SymbolicFactor>,
     /// The nodes in contact rows, ascending, by their places in the piece.
     pub(super) contact: Vec<usize>,
@@ -37,10 +46,15 @@ pub struct CondensedBody {
     pub(super) pattern: Arc<CondensationPattern>,
     /// The trace of the body at the shape.
     pub(super) weights: TraceWeights,
-    /// S over contact dofs 3·node + component, N/mm.
-    pub(crate) schur: Mat<f64>,
-    pub(super) factor: NumericFactor,
-    pub(super) shift: f64,
+    /// Ĉ over contact dofs 3·node + component, mm/N.
+    pub(super) compliance: Mat<f64>,
+    /// σ, N/mm; none where springs hold the body.
+    pub(super) foundation: Option<f64>,
+    /// B by rows: dof of the body, value.
+    rows: Vec<Vec<(usize, f64)>>,
+    factor: NumericFactor,
+    /// The stiffness of every contact node whose surroundings rest, about, N/mm.
+    pub(super) local: Vec<[[f64; 3]; 3]>,
 }
 
 impl CondensationPattern {
@@ -52,40 +66,47 @@ impl CondensationPattern {
         let piece = body.whole();
         let known = contact.iter().filter_map(|&node| Some((node, piece.local(node)?)));
         let (contact_nodes, contact): (Vec<u32>, Vec<usize>) = known.unzip();
-        let (coordinates, symbolic) = Coordinates::new(body, &piece, &contact)?;
-        Ok(Self { coordinates, piece, symbolic, contact, contact_nodes })
+        let (axes, symbolic) = (NodalAxes::new(body, &piece), piece.pattern.symbolic(&[])?);
+        Ok(Self { axes, piece, symbolic, contact, contact_nodes })
     }
 
-    /// Condenses one shape.
+    /// Condenses one shape; `motions`: the free rigid motions over the dofs of the body, independent, 0 at held dofs.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite,
     /// [`ContactError::ResistsRigidMotions`].
-    pub fn condense(self: &Arc<Self>, body: &Body, positions: &[[f64; 3]]) -> Result<CondensedBody, ContactError> {
-        let stiffness = self.piece.assemble(&body.solid, positions, |material| *material);
-        self.piece.check_kernel(&body.name, positions, &stiffness)?;
-        let weights = body.trace.weights(positions);
-        let mut values = self.coordinates.matrix((body, &self.piece), &weights, stiffness);
-        let shift = self.impose(&mut values);
-        let factor = self.symbolic.factorize(&values)?;
-        let size = 3 * self.contact.len();
-        let lower = factor.trailing_block(size);
-        let mut schur = Mat::<f64>::zeros(size, size);
-        matmul(
-            schur.as_mut(),
-            BlockStructure::Rectangular,
-            Accum::Replace,
-            lower.as_ref(),
-            BlockStructure::TriangularLower,
-            lower.transpose(),
-            BlockStructure::TriangularUpper,
-            1.0,
-            Par::Seq,
-        );
-        for dof in 0..size {
-            schur[(dof, dof)] -= shift;
+    pub fn condense(
+        self: &Arc<Self>,
+        body: &Body,
+        positions: &[[f64; 3]],
+        motions: &[Vec<f64>],
+    ) -> Result<CondensedBody, ContactError> {
+        let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
+        self.piece.check_kernel(&body.name, positions, &values)?;
+        let unturned = body.trace.is_empty().then(Vec::new).unwrap_or_else(|| values.clone());
+        self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
+        self.hold(&mut values);
+        let lower = &self.piece.pattern.lower;
+        let foundation = body.trace.is_empty().then(|| {
+            let dofs = || self.contact.iter().flat_map(|&node| 3 * node..3 * node + 3);
+            let sum = dofs().map(|dof| values[lower.starts()[dof]]).sum::<f64>();
+            let foundation = sum / (3 * self.contact.len()) as f64;
+            let free = dofs().filter(|&dof| !self.axes.held[dof]);
+            free.for_each(|dof| values[lower.starts()[dof]] += foundation);
+            foundation
+        });
+        if foundation.is_none() {
+            let stiffness = self.piece.pattern.mean_diagonal(&values);
+            sprung(motions).into_iter().for_each(|dof| values[lower.starts()[dof]] += stiffness);
         }
-        Ok(CondensedBody { pattern: Arc::clone(self), weights, schur, factor, shift })
+        let weights = body.trace.weights(positions);
+        let rows = self.rows(body, &weights);
+        let (factor, compliance) = self.symbolic.factorize_bordered(&values, &rows)?;
+        let local = match foundation {
+            Some(foundation) => on_foundation(&compliance, foundation),
+            None => self.share_of_diagonal(body, positions, &unturned),
+        };
+        Ok(CondensedBody { pattern: Arc::clone(self), weights, compliance, foundation, rows, factor, local })
     }
 
     /// The place of a node of the mesh among the nodes in contact rows.
@@ -100,12 +121,18 @@ impl CondensationPattern {
 
     /// u_D, mm: what supports prescribe at held dofs, 0 at free ones.
     pub(super) fn lift(&self, body: &Body) -> Vec<f64> {
-        self.coordinates.lift(body, &self.piece)
+        self.axes.lift(&self.piece, |node| body.prescribed(node))
     }
 
-    /// Decouples held dofs and adds the shift; returns the shift.
-    fn impose(&self, values: &mut [f64]) -> f64 {
-        let (lower, held) = (&self.coordinates.lower, &self.coordinates.axes.held);
+    /// Forces along the axes in the coordinates of the body, with 0 at held dofs, which supports carry.
+    pub(super) fn free_forces(&self, forces: &mut [f64]) {
+        self.axes.turn(forces);
+        forces.iter_mut().zip(&self.axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
+    }
+
+    /// Decouples held dofs.
+    fn hold(&self, values: &mut [f64]) {
+        let (lower, held) = (&self.piece.pattern.lower, &self.axes.held);
         for column in 0..lower.dimension() {
             for position in lower.starts()[column] + 1..lower.starts()[column + 1] {
                 if held[column] || held[lower.rows()[position]] {
@@ -113,89 +140,130 @@ impl CondensationPattern {
                 }
             }
         }
-        let diagonal = |dof: usize| lower.starts()[dof];
-        let dofs = || self.contact.iter().flat_map(|&node| 3 * node..3 * node + 3);
-        let shift = dofs().map(|dof| values[diagonal(dof)]).sum::<f64>() / (3 * self.contact.len()) as f64;
-        for dof in dofs() {
-            values[diagonal(dof)] += shift;
-        }
-        shift
     }
 
-    /// The entries of a vector over the body that belong to the contact nodes.
-    pub(super) fn contact_part(&self, values: &[f64]) -> Vec<f64> {
-        self.contact.iter().flat_map(|&node| values[3 * node..3 * node + 3].iter().copied()).collect()
+    /// A share of the blocks of K on the diagonal at the contact nodes, turned; a nearly incompressible material is
+    /// replaced by its compressible neighbour, since volume does not resist contact forces.
+    fn share_of_diagonal(&self, body: &Body, positions: &[[f64; 3]], stiffness: &[f64]) -> Vec<[[f64; 3]; 3]> {
+        let is_near = body.solid.materials().iter().any(|material| material.compressible_neighbour().is_some());
+        let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
+        let other = is_near.then(|| self.piece.assemble(&body.solid, positions, near));
+        let (values, starts) = (other.as_deref().unwrap_or(stiffness), self.piece.pattern.lower.starts());
+        let entry = |node: usize, row: usize, column: usize| {
+            values[starts[3 * node + row.min(column)] + row.max(column) - row.min(column)]
+        };
+        let of_node = |&node: &usize| {
+            let block: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|j| entry(node, row, j)));
+            let half = block.map(|row| self.axes.turn_at(node, row));
+            let columns: [[f64; 3]; 3] = std::array::from_fn(|j| half.map(|row| row[j]));
+            columns.map(|column| self.axes.turn_at(node, column).map(|entry| STIFFNESS_SHARE * entry))
+        };
+        self.contact.iter().map(of_node).collect()
+    }
+
+    /// B by rows.
+    fn rows(&self, body: &Body, weights: &TraceWeights) -> Vec<Vec<(usize, f64)>> {
+        let mut rows = Vec::with_capacity(3 * self.contact.len());
+        for (place, &node) in self.contact.iter().enumerate() {
+            for axis in 0..3 {
+                let mut entries: BTreeMap<usize, f64> = BTreeMap::new();
+                if !self.holds(3 * place + axis) {
+                    let unit = std::array::from_fn(|other| if other == axis { 1.0 } else { 0.0 });
+                    let along = self.axes.turn_back_at(node, unit);
+                    body.trace.spread(weights, self.contact_nodes[place], along, &mut |node, share| {
+                        let node = self.piece.local(node).expect("invariant: nodes of the trace are in the body");
+                        for (axis, value) in self.axes.turn_at(node, share).into_iter().enumerate() {
+                            *entries.entry(3 * node + axis).or_default() += value;
+                        }
+                    });
+                }
+                let free = entries.into_iter().filter(|(dof, value)| *value != 0.0 && !self.axes.held[*dof]);
+                rows.push(free.collect());
+            }
+        }
+        rows
     }
 
     /// Whether supports hold a contact dof.
     pub(super) fn holds(&self, dof: usize) -> bool {
-        self.coordinates.axes.held[3 * self.contact[dof / 3] + dof % 3]
+        self.axes.held[3 * self.contact[dof / 3] + dof % 3]
     }
+}
+
+/// The stiffness of every contact node where the others stand on a foundation, of Ĉ; 0 along held dofs.
+fn on_foundation(compliance: &Mat<f64>, foundation: f64) -> Vec<[[f64; 3]; 3]> {
+    let of_node = |node: usize| {
+        let held = |axis: usize| compliance[(3 * node + axis, 3 * node + axis)] == 0.0;
+        let entry = |row: usize, column: usize| {
+            let is_held = row == column && held(row);
+            if is_held { 1.0 / foundation } else { compliance[(3 * node + row, 3 * node + column)] }
+        };
+        let inverse = Matrix3::from_fn(entry).try_inverse().unwrap_or_else(Matrix3::zeros);
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| inverse[(row, column)] - if row == column { foundation } else { 0.0 })
+        })
+    };
+    (0..compliance.nrows() / 3).map(of_node).collect()
+}
+
+/// One dof per motion: where the motions are largest, those at other such dofs left out.
+fn sprung(motions: &[Vec<f64>]) -> Vec<usize> {
+    let mut rest = motions.to_vec();
+    let mut dofs = Vec::new();
+    for _motion in motions {
+        let size = |dof: usize| rest.iter().map(|motion| motion[dof] * motion[dof]).sum::<f64>();
+        let count = rest.first().map_or(0, Vec::len);
+        let largest = (0..count).map(size).fold(0.0, f64::max);
+        let Some(dof) = (0..count).find(|&dof| size(dof) >= (1.0 - EQUAL_SIZES) * largest) else { break };
+        let row: Vec<f64> = rest.iter().map(|motion| motion[dof] / largest.sqrt()).collect();
+        // The combination of the motions that moves this dof is taken out of all.
+        for place in 0..count {
+            let share: f64 = rest.iter().zip(&row).map(|(motion, part)| motion[place] * part).sum();
+            rest.iter_mut().zip(&row).for_each(|(motion, part)| motion[place] -= share * part);
+        }
+        dofs.push(dof);
+    }
+    dofs
 }
 
 impl CondensedBody {
     /// f − K u_D over the whole body, N, for its loads f and prescribed displacements u_D; 0 at held dofs.
     pub(super) fn loads(&self, body: &Body, positions: &[[f64; 3]], lift: &[f64]) -> Vec<f64> {
         let mut load = piece_loads(body, &self.pattern.piece, positions);
-        self.pattern.coordinates.forces(&body.trace, &self.weights, &mut load);
+        self.pattern.axes.turn(&mut load);
         self.unbalanced(body, positions, lift, load)
     }
 
     /// f − K v, N, for displacements v and forces f in the coordinates of the body; 0 at held dofs, which supports
     /// carry.
     pub(super) fn unbalanced(&self, body: &Body, positions: &[[f64; 3]], v: &[f64], mut force: Vec<f64>) -> Vec<f64> {
-        let CondensationPattern { piece, coordinates, .. } = &*self.pattern;
+        let CondensationPattern { piece, axes, .. } = &*self.pattern;
         if v.iter().any(|entry| *entry != 0.0) {
             let (mut u, mut image) = (v.to_vec(), vec![0.0; v.len()]);
-            coordinates.displacements(&body.trace, &self.weights, &mut u);
+            axes.turn_back(&mut u);
             let stiffness = piece.assemble(&body.solid, positions, |material| *material);
             piece.pattern.lower.multiply(&stiffness, &u, &mut image);
-            coordinates.forces(&body.trace, &self.weights, &mut image);
+            axes.turn(&mut image);
             add_scaled(&mut force, -1.0, &image);
         }
-        coordinates.hold(&mut force);
+        force.iter_mut().zip(&axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
         force
     }
 
-    /// S⁻¹f: displacements (mm) of the contact nodes under forces f (N) on them alone, for a body that supports hold.
-    pub fn deflection(&self, forces: &[f64]) -> Vec<f64> {
-        let mut displacement = forces.to_vec();
-        DenseLu::new(&self.schur).solve_in_place(&mut displacement);
-        displacement
+    /// B u over the contact dofs.
+    pub(super) fn contact_part(&self, u: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|entries| entries.iter().map(|&(dof, value)| value * u[dof]).sum()).collect()
     }
 
-    /// What forces on the whole body, N, 0 at held dofs, one column per load case, put on the contact dofs, N.
-    pub fn condense_loads(&self, mut forces: Mat<f64>) -> Mat<f64> {
-        self.factor.solve_columns_in_place(&mut forces);
-        let mut loads = Mat::<f64>::zeros(self.schur.nrows(), forces.ncols());
-        for column in 0..forces.ncols() {
-            let contact = self.pattern.contact_part(forces.col_as_slice(column));
-            let mut load = multiply(&self.schur, &contact);
-            add_scaled(&mut load, self.shift, &contact);
-            loads.col_as_slice_mut(column).copy_from_slice(&load);
+    /// Adds Bᵀ of forces on the contact dofs to forces on the whole body.
+    pub(super) fn add_contact_forces(&self, contact: &[f64], forces: &mut [f64]) {
+        for (force, entries) in contact.iter().zip(&self.rows) {
+            entries.iter().for_each(|&(dof, value)| forces[dof] += value * force);
         }
-        loads
     }
 
-    /// Extends contact displacements to the body under `load` (0 at held dofs); `forces` act on the contact dofs.
-    pub(super) fn extend(&self, contact_displacement: &[f64], forces: &[f64], load: &[f64]) -> Vec<f64> {
-        let mut u = load.to_vec();
-        for (index, &node) in self.pattern.contact.iter().enumerate() {
-            for component in 0..3 {
-                let dof = 3 * index + component;
-                u[3 * node + component] += forces[dof] + self.shift * contact_displacement[dof];
-            }
-        }
-        self.factor.solve_in_place(&mut u);
-        u
-    }
-
-    /// Loads over the whole body and forces on the contact dofs, N, together.
-    pub(super) fn full_force(&self, load: &[f64], forces: &[f64]) -> Vec<f64> {
-        let mut full = load.to_vec();
-        for (&node, force) in self.pattern.contact.iter().zip(forces.chunks_exact(3)) {
-            add_scaled(&mut full[3 * node..3 * node + 3], 1.0, force);
-        }
-        full
+    /// K̂⁻¹ f in place, for forces on the whole body, 0 at held dofs, one column per load.
+    pub(super) fn solve(&self, forces: &mut Mat<f64>) {
+        self.factor.solve_columns_in_place(forces);
     }
 }

@@ -2,11 +2,10 @@
 //! all nodes, all columns in one solve per body.
 //!
 //! ```text
-//! u_c′ = C (r̂_c − ∂Bᵀλ − Bᵀλ′) + N a′,     (K + σ I_c) u′ = r + (−∂Bᵀλ − Bᵀλ′ + σ u_c′ on the contact dofs)
+//! w′ = C (r̂ − ∂Bᵀλ − Bᵀλ′) + N a′,     u′ = K̂⁻¹ (r − ∂Bᵀλ − Bᵀλ′) + R b  with  B u′ = w′
 //! ```
 //! Rigid motions stand as in [`tangents`](super::tangents); those that no contact node feels stay as they are.
 
-use crate::direct::compliant_body::ContactBody;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::tangents::{CondensedTangents, ShapeLoads};
 use crate::linear::dense::multiply;
@@ -27,38 +26,27 @@ pub(super) fn displacement_tangents(
     let mut displacements = vec![Vec::new(); count];
     let mut forces = forces.into_iter().peekable();
     for (number, body) in contact.bodies.iter().enumerate() {
-        let condensed = &body.stiff().condensed;
-        let (pattern, weights) = (&condensed.pattern, &condensed.weights);
+        let pattern = &body.stiff().condensed.pattern;
         let own = forces.next_if(|(shaped, _)| *shaped == number);
-        let mut right = own.map_or_else(|| Mat::zeros(pattern.piece.dof_count(), count), |(_, forces)| forces);
+        let right = own.map_or_else(|| Mat::zeros(pattern.piece.dof_count(), count), |(_, forces)| forces);
+        let (mut on_contact, mut moved) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for column in 0..count {
-            let held = body.contact_forces(&found.tangents.forces[column]);
-            let on_contact = loads.contact[number].col_as_slice(column);
-            let u = contact_change(body, on_contact, &held, &amplitudes[column][number]);
-            let turned = loads.turned[number].col_as_slice(column);
-            let right = right.col_as_slice_mut(column);
-            for (index, &node) in pattern.contact.iter().enumerate() {
-                for dof in 3 * index..3 * index + 3 {
-                    right[3 * node + dof % 3] += turned[dof] + held[dof] + condensed.shift * u[dof];
-                }
+            let mut held = body.contact_forces(&found.tangents.forces[column]);
+            let mut u = loads.responses[number].displacement.col_as_slice(column).to_vec();
+            add_scaled(&mut u, 1.0, &multiply(body.stiff().compliance(), &held));
+            for (motion, amplitude) in body.stiff().motions.iter().zip(&amplitudes[column][number]) {
+                add_scaled(&mut u, *amplitude, motion);
             }
+            add_scaled(&mut held, 1.0, loads.turned[number].col_as_slice(column));
+            on_contact.push(held);
+            moved.push(u);
         }
-        condensed.factor.solve_columns_in_place(&mut right);
+        let mut right = body.stiff().extended(right, &on_contact, &moved);
         for (column, all) in displacements.iter_mut().enumerate() {
             let u = right.col_as_slice_mut(column);
-            pattern.coordinates.displacements(&contact.problem.bodies[number].trace, weights, u);
+            pattern.axes.turn_back(u);
             all.extend_from_slice(u);
         }
     }
     displacements
-}
-
-/// u_c′ of a body, mm, from forces of the change of the shape and of λ′ on its contact dofs, N, and amplitudes, mm.
-fn contact_change(body: &ContactBody, loads: &[f64], held: &[f64], amplitudes: &[f64]) -> Vec<f64> {
-    let forces: Vec<f64> = loads.iter().zip(held).map(|(load, held)| load + held).collect();
-    let mut u = multiply(&body.stiff().compliance, &forces);
-    for (motion, amplitude) in body.stiff().motions.iter().zip(amplitudes) {
-        add_scaled(&mut u, *amplitude, motion);
-    }
-    u
 }

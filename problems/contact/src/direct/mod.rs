@@ -1,7 +1,7 @@
 //! Direct condensation onto the contact nodes: an independent path, and the one that finds loosely held equilibria.
 //!
 //! ```text
-//! S u_c = f̂_c − Bᵀλ,   S = K_cc − K_ci K_ii⁻¹ K_ic,   f̂_c = f_c − K_ci K_ii⁻¹ f_i           (per body, whole and untorn)
+//! w = C (f̂ − Bᵀλ) + N a,   C = B K⁻¹ Bᵀ                  (per body, whole and untorn; N a: rigid motions left free)
 //! ```
 //! The solution uses nothing of total FETI: neither its constraint rows, nor its coarse space, nor its Krylov methods.
 
@@ -11,9 +11,7 @@ mod compliant_contact;
 mod condensation;
 mod condensation_key;
 mod cone_programs;
-mod congruence;
 mod continuation;
-mod coordinates;
 mod diagnosis;
 mod displacement_load;
 mod displacement_tangents;
@@ -29,7 +27,6 @@ mod solver;
 mod tangents;
 
 pub use compliant_contact::CompliantContact;
-pub use condensation::CondensationPattern;
 pub use condensation_key::CondensedShelf;
 pub use cone_programs::by_cone_programs;
 #[cfg(feature = "interior-point")]

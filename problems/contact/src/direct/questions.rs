@@ -36,8 +36,8 @@ impl DirectSolver {
         let extended = |body: usize| {
             let none = || vec![0.0; state.displacement(body).len()];
             let load = loads.get_mut(body).map_or_else(none, std::mem::take);
-            let (own, on_contact) = (&self.problem.bodies[body], &adjoint.displacements[body]);
-            let p = state.contact.bodies[body].extend_under(own, on_contact, &adjoint.multipliers, &load);
+            let on_contact = &adjoint.displacements[body];
+            let p = state.contact.bodies[body].extend_under(on_contact, &adjoint.multipliers, &load);
             (body, p)
         };
         let adjoint_displacements: Vec<(usize, Vec<f64>)> = self.problem.map.shaped_bodies().map(extended).collect();
@@ -153,7 +153,7 @@ impl DirectSolver {
             for (node, force) in own.as_chunks::<3>().0.iter().enumerate() {
                 piece.add_force(node as u32, *force, &mut load);
             }
-            CondensedLoad::new((body, state.contact.bodies[number].stiff()), load, state.displacement(number))
+            CondensedLoad::new(state.contact.bodies[number].stiff(), load, state.displacement(number))
         };
         (0..self.patterns.len()).map(load).collect()
     }

@@ -12,11 +12,9 @@ impl DirectState {
             let first: usize = sizes.take(number).sum();
             let body = &self.contact.bodies[number];
             let contact = &self.solution.displacement[first..first + body.load.free.len()];
-            let own = &self.contact.problem.bodies[number];
-            let mut u = body.extend_under(own, contact, &self.solution.forces, &body.load.full);
+            let mut u = body.extend_under(contact, &self.solution.forces, &body.load.full);
             let mut lift = body.load.lift.clone();
-            let condensed = &body.stiff().condensed;
-            condensed.pattern.coordinates.displacements(&own.trace, &condensed.weights, &mut lift);
+            body.stiff().condensed.pattern.axes.turn_back(&mut lift);
             add_scaled(&mut u, 1.0, &lift);
             u
         })

@@ -5,9 +5,11 @@
 //! r = −∂(K u − f),   −Σ_rows λ_r ∂(w d_r) at the nodes of the rows;     ∂(w d_r)·u − ∂gap over the rows
 //! ```
 
+use crate::body::Body;
 use crate::body::shape_force::shape_forces;
 use crate::body::shape_sensitivity::position_sensitivities;
 use crate::direct::adjoint::CondensedAdjoint;
+use crate::direct::compliant_body::{ContactBody, Response};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::direct::tangents::ShapeLoads;
@@ -85,8 +87,7 @@ impl DirectSolver {
                     add_scaled(&mut forces[3 * node as usize..][..3], 1.0, force);
                 }
             }
-            let (coordinates, weights) = (&self.patterns[number].coordinates, &state.contact.rows.traces[number]);
-            forces.iter_mut().for_each(|forces| coordinates.free_forces(&body.trace, weights, forces));
+            forces.iter_mut().for_each(|forces| self.patterns[number].free_forces(forces));
             (number, Mat::from_fn(piece.dof_count(), forces.len(), |dof, column| forces[column][dof]))
         };
         self.problem.map.shaped_bodies().map(of_body).collect()
@@ -117,12 +118,15 @@ impl DirectSolver {
                 add_turned_forces(contact, &state.solution.forces, changes, &mut turned, column);
             }
         }
-        let mut on_contact = turned.clone();
+        let on_contact = |(body, turned): (&ContactBody, &Mat<f64>)| body.stiff().contact_response(turned);
+        let mut responses: Vec<Response> = contact.bodies.iter().zip(&turned).map(on_contact).collect();
         for (number, forces) in forces {
-            on_contact[number] += contact.bodies[number].stiff().condensed.condense_loads(forces);
+            let own = contact.bodies[number].stiff().response(forces);
+            responses[number].displacement += own.displacement;
+            responses[number].resultants += own.resultants;
         }
         let areas = changes.iter().map(|changes| contact.rows.area_changes(changes)).collect();
-        ShapeLoads { contact: on_contact, turned, approaches, areas }
+        ShapeLoads { responses, turned, approaches, areas }
     }
 }
 
@@ -133,10 +137,10 @@ fn entry(values: &[f64], node: u32) -> [f64; 3] {
 
 /// Vectors over the contact dofs of all bodies, along the axes at the nodes.
 fn node_values(contact: &CompliantContact, values: &[Vec<f64>]) -> NodeValues {
-    let of_body = |(body, values): (&crate::direct::compliant_body::ContactBody, &Vec<f64>)| {
+    let of_body = |(body, values): (&ContactBody, &Vec<f64>)| {
         let pattern = &body.stiff().condensed.pattern;
         let nodes = pattern.contact_nodes().iter().zip(&pattern.contact).zip(values.as_chunks::<3>().0);
-        nodes.map(|((&node, &place), own)| (node, pattern.coordinates.axes.turn_back_at(place, *own))).collect()
+        nodes.map(|((&node, &place), own)| (node, pattern.axes.turn_back_at(place, *own))).collect()
     };
     NodeValues(contact.bodies.iter().zip(values).map(of_body).collect())
 }
@@ -155,7 +159,7 @@ fn add_turned_forces(
         let pattern = &body.stiff().condensed.pattern;
         for (place, node) in pattern.contact_nodes().iter().enumerate() {
             let Some(force) = forces.get(node) else { continue };
-            let turned = pattern.coordinates.axes.turn_at(pattern.contact[place], *force);
+            let turned = pattern.axes.turn_at(pattern.contact[place], *force);
             for axis in (0..3).filter(|axis| !pattern.holds(3 * place + axis)) {
                 load[(3 * place + axis, column)] += turned[axis];
             }
@@ -166,15 +170,20 @@ fn add_turned_forces(
 impl DirectState {
     /// Displacements of the contact dofs of every body, the prescribed ones included.
     fn contact_displacements(&self) -> Vec<Vec<f64>> {
-        let mut rest = self.solution.displacement.as_slice();
-        let of_body = |body: &crate::direct::compliant_body::ContactBody| {
+        let (mut rest, problem) = (self.solution.displacement.as_slice(), &self.contact.problem);
+        let of_body = |(body, own_body): (&ContactBody, &Body)| {
             let (own, others) = rest.split_at(body.load.free.len());
             rest = others;
-            let pattern = &body.stiff().condensed.pattern;
-            let mut u = pattern.contact_part(&body.load.lift);
+            let condensed = &body.stiff().condensed;
+            let pattern = &condensed.pattern;
+            let prescribed = |node: u32| own_body.prescribed(node);
+            let lifted = |(&node, &place): (&u32, &usize)| {
+                pattern.axes.turn_at(place, own_body.trace.value(&condensed.weights, node, &prescribed))
+            };
+            let mut u: Vec<f64> = pattern.contact_nodes().iter().zip(&pattern.contact).flat_map(lifted).collect();
             add_scaled(&mut u, 1.0, own);
             u
         };
-        self.contact.bodies.iter().map(of_body).collect()
+        self.contact.bodies.iter().zip(problem.bodies.iter()).map(of_body).collect()
     }
 }

@@ -68,17 +68,14 @@ impl DirectSolver {
     /// # Errors
     /// As [`DirectSolver::new`].
     pub fn sharing(problem: Arc<ContactProblem>, shelf: Arc<CondensedShelf>) -> Result<Self, ContactError> {
-        let pattern = |(number, body)| {
+        let key = |number| {
             let sides = problem.boundary.points.iter().flat_map(|point| &point.sides);
             let contact: BTreeSet<u32> = sides.filter(|side| side.body == number).map(|side| side.node).collect();
-            Ok(Arc::new(CondensationPattern::new(body, &contact.into_iter().collect::<Vec<u32>>())?))
+            let contact: Vec<u32> = contact.into_iter().collect();
+            CondensationKey::of((&problem.bodies, number), &contact, &shelf)
         };
-        let patterns = problem.bodies.iter().enumerate().map(pattern);
-        let patterns = patterns.collect::<Result<Vec<Arc<CondensationPattern>>, ContactError>>()?;
-        let key = |(number, pattern): (usize, &Arc<CondensationPattern>)| {
-            Arc::new(CondensationKey::new(Arc::clone(&problem.bodies), number, Arc::clone(pattern)))
-        };
-        let keys = patterns.iter().enumerate().map(key).collect();
+        let keys = (0..problem.bodies.len()).map(key).collect::<Result<Vec<_>, ContactError>>()?;
+        let patterns = keys.iter().map(|key| Arc::clone(key.pattern())).collect();
         Ok(Self { problem, patterns, keys, shelf, fixed: OnceLock::new() })
     }
 
@@ -103,8 +100,7 @@ impl DirectSolver {
         let factored = match known {
             Some(known) => known,
             None => {
-                let condensed = self.patterns[number].condense(body, positions)?;
-                let factors = CompliantBody::new(condensed, (body, rigid), number, positions);
+                let factors = CompliantBody::new(&self.patterns[number], (body, rigid), number, positions)?;
                 let factored = Arc::new(Factored { positions: Arc::clone(positions), factors });
                 self.shelf.put(key, &factored);
                 factored
@@ -151,7 +147,7 @@ impl DirectSolver {
         Ok((contact, unit, factorizations))
     }
 
-    /// The state of a shape to a relative residual, from contact displacements of a similar shape or from nothing.
+    /// The state of a shape to a relative residual, from the forces and motions of a similar shape or from nothing.
     pub(crate) fn solve_configuration(
         &self,
         configuration: Configuration,
@@ -199,8 +195,7 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(CondensedSolution, Work, usize), ContactError> {
-        let size: usize = contact.bodies.iter().map(|body| body.load.free.len()).sum();
-        let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
+        let start = start.and_then(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let mut reached = equilibrium(contact, start.as_deref(), tolerance, max_steps);
         if reached.solved {
@@ -259,7 +254,7 @@ impl DirectSolver {
         tolerance: f64,
     ) -> Result<ContactState<DirectState>, ContactError> {
         let start = match start {
-            Some(ContactWarmStart::Displacements(displacements)) => Some(displacements.as_slice()),
+            Some(ContactWarmStart::Forces(forces)) => Some(forces.as_slice()),
             _ => None,
         };
         self.solve_configuration(Configuration::new(&self.problem, controls)?, start, tolerance)
@@ -282,9 +277,9 @@ impl DirectSolver {
 }
 
 impl DirectState {
-    /// Displacements at the contact, from which a similar shape can be solved.
+    /// Contact forces and free motions, from which a similar shape can be solved.
     pub fn warm_start(&self) -> ContactWarmStart {
-        ContactWarmStart::Displacements(self.solution.displacement.clone())
+        ContactWarmStart::Forces(self.contact.own_unknowns(&self.solution.unknowns))
     }
 }
 

@@ -7,22 +7,22 @@
 //! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of bodies of fixed shape do not change; what
 //! those of other bodies change is part of r.
 
-use crate::direct::compliant_body::ContactBody;
+use crate::direct::compliant_body::{ContactBody, Response};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::newton::SPRINGS;
 use crate::direct::newton::active_system;
 use crate::equilibrium::Tangents;
 use crate::equilibrium::law::{Friction, Linearization};
 use crate::linear::dense::{DenseLu, multiply, multiply_columns};
-use crate::linear::vector::{dot, norm};
+use crate::linear::vector::norm;
 use faer::Mat;
 use nalgebra::DVector;
 
 /// What some changes of the shape do to the contact problem, one column or vector per change.
 pub(super) struct ShapeLoads {
-    /// Forces on the contact dofs of every body, N.
-    pub contact: Vec<Mat<f64>>,
-    /// Those among them that turned contact rows cause, N.
+    /// What they do to the contact dofs of every body.
+    pub responses: Vec<Response>,
+    /// Forces on the contact dofs that turned contact rows cause, N.
     pub turned: Vec<Mat<f64>>,
     /// ∂B u − ∂g over the packed rows, mm.
     pub approaches: Vec<Vec<f64>>,
@@ -44,7 +44,7 @@ pub(super) fn tangents(
     linearizations: &[Linearization],
     loads: &ShapeLoads,
 ) -> CondensedTangents {
-    let ShapeLoads { contact: contact_loads, approaches, .. } = loads;
+    let ShapeLoads { responses, approaches, .. } = loads;
     let boundary = &contact.problem.boundary;
     let (count, motions) = (contact.row_count(), contact.resultant.len());
     let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);
@@ -53,7 +53,7 @@ pub(super) fn tangents(
     for motion in size..size + motions {
         sprung[(motion, motion)] = SPRINGS[0];
     }
-    let driving = |(column, approach): (usize, &Vec<f64>)| driving(contact, contact_loads, column, approach);
+    let driving = |(column, approach): (usize, &Vec<f64>)| driving(contact, responses, column, approach);
     let driven: Vec<(Vec<f64>, Vec<f64>)> = approaches.iter().enumerate().map(driving).collect();
     let mut right = Mat::<f64>::zeros(size + motions, approaches.len());
     for (column, (constant, resultant)) in driven.iter().enumerate() {
@@ -92,19 +92,18 @@ pub(super) fn tangents(
     CondensedTangents { tangents, amplitudes }
 }
 
-/// δd and δe, dimensionless, of a column of forces on the contact dofs and of ∂B u − ∂g.
+/// δd and δe, dimensionless, of a column of what moves the contact dofs and of ∂B u − ∂g.
 fn driving(
     contact: &CompliantContact,
-    contact_loads: &[Mat<f64>],
+    responses: &[Response],
     column: usize,
     approach: &[f64],
 ) -> (Vec<f64>, Vec<f64>) {
     let mut constant = approach.to_vec();
     let mut own = Vec::new();
-    for (ContactBody { body, rows, .. }, loads) in contact.bodies.iter().zip(contact_loads) {
-        let forces = loads.col_as_slice(column);
-        rows.add_jumps(&multiply(&body.factors.compliance, forces), 1.0, &mut constant);
-        own.extend(body.factors.motions.iter().map(|motion| dot(motion, forces) / contact.load));
+    for (ContactBody { rows, .. }, response) in contact.bodies.iter().zip(responses) {
+        rows.add_jumps(response.displacement.col_as_slice(column), 1.0, &mut constant);
+        own.extend(response.resultants.col_as_slice(column).iter().map(|resultant| resultant / contact.load));
     }
     constant.iter_mut().for_each(|d| *d /= contact.unit * contact.load);
     (constant, contact.resultants_of(&DVector::from_vec(own)))

@@ -19,6 +19,11 @@ use crate::scene::{Geometry, Scene};
 use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap};
 use std::sync::Arc;
 
+/// c relative to the assembled diagonal of the contact nodes: the Schur complement's diagonal is about half of it.
+pub(crate) const STIFFNESS_SHARE: f64 = 0.5;
+/// Smallest share of c that flat or tall bricks leave: with less, displacements count too little against forces.
+const SMALLEST_SHARE: f64 = 0.01;
+
 /// Poisson's ratio from which standard cells are nearly incompressible: total FETI takes hundreds of products.
 const LOCKING: f64 = 0.499;
 /// Area of a contact face, over the square of the smallest extent of the body, that is rounding.
@@ -194,6 +199,12 @@ impl ContactProblem {
     /// The proportions of cells that are plates on the contact face or rods across it, where they are extreme.
     pub(crate) fn flat_or_tall(&self) -> Option<f64> {
         self.shapes.iter().filter_map(CellShapes::flat_or_tall).reduce(f64::max)
+    }
+
+    /// c, the mean stiffness of a contact node whose surroundings rest, relative to the mean diagonal of K there. The
+    /// diagonal is the largest stiffness of flat or tall bricks; most displacements of the boundary meet a smaller one.
+    pub(crate) fn diagonal_share(&self) -> f64 {
+        STIFFNESS_SHARE * self.flat_or_tall().map_or(1.0, |ratio| ratio.recip().max(SMALLEST_SHARE))
     }
 
     /// Positions of all points of a shape: per body its nodes, then the middles of edges of its curved faces.

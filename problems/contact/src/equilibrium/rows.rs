@@ -81,10 +81,12 @@ impl ContactRows {
     }
 
     /// Jumps less gaps of all packed rows where free directions are at rest and held ones where supports put them, mm.
-    pub fn prescribed_approaches(&self, boundary: &ContactBoundary) -> Vec<f64> {
+    pub fn prescribed_approaches(&self, boundary: &ContactBoundary, bodies: &[Body]) -> Vec<f64> {
         let mut approaches = Vec::with_capacity(boundary.row_count);
         for (point, node) in boundary.points.iter().zip(&self.nodes) {
-            let jump = point.prescribed_jump(&node.weights);
+            let (own, by_trace) =
+                (point.prescribed_jump(&node.weights), self.prescribed_by_trace((point, node), bodies));
+            let jump: [f64; 3] = std::array::from_fn(|axis| own[axis] + by_trace[axis]);
             approaches.extend(node.directions.iter().map(|direction| dot(*direction, jump)));
             approaches[point.start] -= node.gap;
         }

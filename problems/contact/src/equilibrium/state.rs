@@ -85,8 +85,8 @@ pub struct StageSeconds {
 pub enum ContactWarmStart {
     /// Multipliers of the torn problem, all rows.
     Multipliers(Vec<f64>),
-    /// Contact displacements of the condensed problem, all bodies, mm.
-    Displacements(Vec<f64>),
+    /// Packed contact forces of the condensed problem, N, then the free rigid motions of all bodies, mm.
+    Forces(Vec<f64>),
 }
 
 /// A solved shape; `S` is what its solver keeps of it.

@@ -1,33 +1,33 @@
-//! Sparse Cholesky factorisation A = L Lᵀ by faer: one symbolic analysis for all matrices of a pattern.
+//! Sparse Cholesky factorisation A = L Lᵀ: one symbolic analysis, by faer, for all matrices of a pattern.
 
 use crate::linear::FactorizationError;
+use crate::linear::border::Border;
 use crate::linear::dense::column;
 use crate::linear::entry::{Entry, Row};
+use crate::linear::fronts::{Fronts, NoPostorder};
+use crate::linear::multifrontal::Elimination;
 use crate::linear::real::Real;
 use crate::linear::supernodal;
 use crate::linear::symmetric::LowerPattern;
+use crate::linear::update::Triangle;
 use crate::linear::vector::{add_scaled, norm};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::Perm;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky};
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-    supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky},
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::ComplexField;
 use faer::{Conj, Mat, MatMut, Par, Side};
 use std::sync::{Arc, OnceLock};
-
-/// A factorisation works on one thread: subdomains are what threads are shared among.
-const SEQUENTIAL: Par = Par::Seq;
 
 /// Elimination order and fill of one pattern.
 #[derive(Debug)]
 pub struct SymbolicFactor {
     pattern: Arc<LowerPattern>,
-    symbolic: SymbolicCholesky<usize>,
+    fronts: Fronts,
     order: Vec<usize>,
 }
 
@@ -40,29 +40,21 @@ pub struct NumericFactor {
 }
 
 impl SymbolicFactor {
-    /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices.
+    /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices. Where the order is
+    /// no postorder of its elimination tree, an equivalent one is taken.
     ///
     /// # Errors
     /// [`FactorizationError`] when the analysis fails (out of memory, index overflow).
     pub fn new(pattern: Arc<LowerPattern>, order: Vec<usize>) -> Result<Self, FactorizationError> {
-        let n = pattern.dimension();
-        let mut inverse = vec![0; n];
-        for (new, &old) in order.iter().enumerate() {
-            inverse[old] = new;
-        }
-        let permutation = Perm::new_checked(order.clone().into_boxed_slice(), inverse.into_boxed_slice(), n);
-        let parameters = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
+        let (order, fronts) = match Fronts::new(analysis(&pattern, &order)?, &pattern, &order) {
+            Ok(fronts) => (order, fronts),
+            Err(NoPostorder { order }) => {
+                let fronts = Fronts::new(analysis(&pattern, &order)?, &pattern, &order);
+                let reason = || failure("symbolic factorisation", "no postorder".into());
+                (order, fronts.map_err(|_| reason())?)
+            }
         };
-        let symbolic = factorize_symbolic_cholesky(
-            pattern_ref(&pattern),
-            Side::Lower,
-            SymmetricOrdering::Custom(permutation.as_ref()),
-            parameters,
-        )
-        .map_err(|error| failure("symbolic factorisation", format!("{error:?}")))?;
-        Ok(Self { pattern, symbolic, order })
+        Ok(Self { pattern, fronts, order })
     }
 
     /// Factors the matrix with these lower values.
@@ -70,29 +62,73 @@ impl SymbolicFactor {
     /// # Errors
     /// [`FactorizationError`] when the matrix is not positive definite.
     pub fn factorize(self: &Arc<Self>, values: &[f64]) -> Result<NumericFactor, FactorizationError> {
-        let mut factor = vec![0.0; self.symbolic.len_val()];
-        let mut memory =
-            MemBuffer::new(self.symbolic.factorize_numeric_llt_scratch::<f64>(SEQUENTIAL, Default::default()));
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut factor,
-                SparseColMatRef::new(pattern_ref(&self.pattern), values),
-                Side::Lower,
-                Default::default(),
-                SEQUENTIAL,
-                MemStack::new(&mut memory),
-                Default::default(),
-            )
-            .map_err(|error| failure("Cholesky factorisation", format!("{error:?}: not positive definite")))?;
-        Ok(NumericFactor { symbolic: Arc::clone(self), values: factor, single: OnceLock::new() })
+        Ok(self.eliminate(values, &Border::none())?.0)
+    }
+
+    /// Factors the matrix A with these lower values, and forms B A⁻¹ Bᵀ for the rows of a sparse B, given by entries
+    /// (index, value).
+    ///
+    /// # Errors
+    /// [`FactorizationError`] when the matrix is not positive definite.
+    pub(crate) fn factorize_bordered(
+        self: &Arc<Self>,
+        values: &[f64],
+        rows: &[Vec<(usize, f64)>],
+    ) -> Result<(NumericFactor, Mat<f64>), FactorizationError> {
+        let mut place = vec![0; self.order.len()];
+        self.order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
+        let (factor, lower) = self.eliminate(values, &Border::new(&self.fronts, rows, |index| place[index]))?;
+        let size = rows.len();
+        let mut product = Mat::<f64>::zeros(size, size);
+        for column in 0..size {
+            for (row, value) in (column..).zip(lower.column(column)) {
+                (product[(row, column)], product[(column, row)]) = (-value, -value);
+            }
+        }
+        Ok((factor, product))
+    }
+
+    fn eliminate(
+        self: &Arc<Self>,
+        matrix: &[f64],
+        border: &Border,
+    ) -> Result<(NumericFactor, Triangle), FactorizationError> {
+        let mut values = vec![0.0; self.fronts.symbolic().len_val()];
+        let border = Elimination { fronts: &self.fronts, matrix, border }
+            .factorize(&mut values)
+            .map_err(|_| failure("Cholesky factorisation", "not positive definite".into()))?;
+        Ok((NumericFactor { symbolic: Arc::clone(self), values, single: OnceLock::new() }, border))
+    }
+
+    /// Number of stored entries of L.
+    pub fn entry_count(&self) -> usize {
+        self.fronts.symbolic().len_val()
     }
 
     /// Solves L Lᵀ x = b in place for the values of a factor, in either precision; columns of b are right sides.
     fn solve<E: ComplexField>(&self, values: &[E], b: MatMut<'_, E>) {
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<E>(b.ncols(), SEQUENTIAL));
+        let symbolic = self.fronts.analysis();
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<E>(b.ncols(), Par::Seq));
         let stack = MemStack::new(&mut memory);
-        LltRef::new(&self.symbolic, values).solve_in_place_with_conj(Conj::No, b, SEQUENTIAL, stack);
+        LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, b, Par::Seq, stack);
     }
+}
+
+/// The analysis of a pattern for an elimination order.
+fn analysis(pattern: &LowerPattern, order: &[usize]) -> Result<SymbolicCholesky<usize>, FactorizationError> {
+    let n = pattern.dimension();
+    let mut inverse = vec![0; n];
+    for (new, &old) in order.iter().enumerate() {
+        inverse[old] = new;
+    }
+    let permutation = Perm::new_checked(order.into(), inverse.into_boxed_slice(), n);
+    let parameters = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..Default::default()
+    };
+    let ordering = SymmetricOrdering::Custom(permutation.as_ref());
+    factorize_symbolic_cholesky(pattern_ref(pattern), Side::Lower, ordering, parameters)
+        .map_err(|error| failure("symbolic factorisation", format!("{error:?}")))
 }
 
 /// Steps of iterative refinement allowed.
@@ -209,10 +245,7 @@ impl NumericFactor {
     }
 
     fn supernodes(&self) -> &SymbolicSupernodalCholesky<usize> {
-        match self.symbolic.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic,
-            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("invariant: factors are forced to be supernodal"),
-        }
+        self.symbolic.fronts.symbolic()
     }
 }
 
@@ -228,6 +261,11 @@ fn failure(what: &'static str, reason: String) -> FactorizationError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::ordering::nested_dissection;
+    use testset::kit::Random;
+
+    /// Rows by entries (index, value).
+    type SparseRows = Vec<Vec<(usize, f64)>>;
 
     /// The 1D Laplacian with 7 unknowns.
     fn laplacian() -> (Arc<LowerPattern>, Vec<f64>) {
@@ -270,5 +308,82 @@ mod tests {
         let symbolic = Arc::new(SymbolicFactor::new(pattern, (0..7).collect()).expect("symbolic"));
         let error = symbolic.factorize(&values).expect_err("indefinite");
         assert!(error.to_string().contains("not positive definite"), "{error}");
+    }
+
+    /// A grid of 6 × 5 × 4 points with random entries, in nested dissection order; B: three entries per row.
+    fn grid(seed: u64) -> (Arc<SymbolicFactor>, Vec<f64>, SparseRows) {
+        let mut random = Random(seed);
+        let counts = [6, 5, 4];
+        let index = |[i, j, k]: [usize; 3]| (i * counts[1] + j) * counts[2] + k;
+        let all: Vec<[usize; 3]> =
+            (0..120).map(|n| [n / (counts[1] * counts[2]), n / counts[2] % counts[1], n % counts[2]]).collect();
+        let near = |a: &[usize; 3], b: &[usize; 3]| a != b && (0..3).all(|axis| a[axis].abs_diff(b[axis]) <= 1);
+        let graph: Vec<Vec<u32>> =
+            all.iter().map(|a| all.iter().filter(|b| near(a, b)).map(|b| index(*b) as u32).collect()).collect();
+        let columns = graph.iter().map(|near| near.iter().map(|&other| other as usize).collect()).collect();
+        let pattern = Arc::new(LowerPattern::from_columns(columns));
+        let points: Vec<[f64; 3]> = all.iter().map(|x| x.map(|x| x as f64)).collect();
+        let order = nested_dissection(&points, &graph, &[]);
+        let values = (0..pattern.dimension()).flat_map(|column| {
+            pattern.rows()[pattern.starts()[column]..pattern.starts()[column + 1]].iter().map(move |&row| (row, column))
+        });
+        let values = values.map(|(row, column)| if row == column { 30.0 } else { random.signed() }).collect();
+        let rows = (0..17).map(|row| (0..3).map(|k| ((7 * row + 13 * k) % 120, random.signed())).collect()).collect();
+        (Arc::new(SymbolicFactor::new(pattern, order).expect("symbolic")), values, rows)
+    }
+
+    #[test]
+    fn a_border_is_condensed() {
+        for seed in 0..8 {
+            let (symbolic, values, rows) = grid(seed);
+            let (factor, product) = symbolic.factorize_bordered(&values, &rows).expect("positive definite");
+            for (column, entries) in rows.iter().enumerate() {
+                let mut x = vec![0.0; 120];
+                entries.iter().for_each(|(index, value)| x[*index] += value);
+                factor.solve_in_place(&mut x);
+                for (row, entries) in rows.iter().enumerate() {
+                    let expected: f64 = entries.iter().map(|(index, value)| value * x[*index]).sum();
+                    assert!((product[(row, column)] - expected).abs() < 1e-15, "{expected}");
+                }
+            }
+            assert_eq!(factor.values, symbolic.factorize(&values).expect("positive definite").values);
+        }
+    }
+
+    /// Fronts that are large enough for several threads.
+    #[test]
+    fn factors_do_not_depend_on_the_number_of_threads() {
+        let size = 700;
+        let pattern = Arc::new(LowerPattern::from_columns((0..size).map(|i| (i + 1..size).collect()).collect()));
+        let values = (0..size).flat_map(|i| (i..size).map(move |j| if i == j { 2e3 } else { ((i * j) as f64).sin() }));
+        let values: Vec<f64> = values.collect();
+        let rows: Vec<Vec<(usize, f64)>> = (0..size).map(|row| vec![(row, 1.0), (size - 1, 0.5)]).collect();
+        let symbolic = Arc::new(SymbolicFactor::new(pattern, (0..size).collect()).expect("symbolic"));
+        let factored = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| symbolic.factorize_bordered(&values, &rows).expect("positive definite"))
+        };
+        let (factor, product) = factored(1);
+        for threads in [2, 3] {
+            let (other, found) = factored(threads);
+            assert!(factor.values == other.values && product == found);
+        }
+        let mut x = vec![1.0; size];
+        factor.solve_in_place(&mut x);
+        let mut image = vec![0.0; size];
+        symbolic.pattern.multiply(&values, &x, &mut image);
+        assert!(image.iter().all(|value| (value - 1.0).abs() < 1e-13));
+    }
+
+    /// Orders that are no postorder are exchanged for an equivalent one.
+    #[test]
+    fn any_order_factors() {
+        let (symbolic, values, _) = grid(3);
+        let order: Vec<usize> = (0..120).map(|new| 7 * new % 120).collect();
+        let other = Arc::new(SymbolicFactor::new(Arc::clone(&symbolic.pattern), order).expect("symbolic"));
+        let [mut x, mut y] = [(); 2].map(|()| (0..120).map(|i| (i as f64).cos()).collect::<Vec<f64>>());
+        symbolic.factorize(&values).expect("positive definite").solve_in_place(&mut x);
+        other.factorize(&values).expect("positive definite").solve_in_place(&mut y);
+        assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-15));
     }
 }

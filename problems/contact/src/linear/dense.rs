@@ -90,14 +90,6 @@ impl DenseLu {
         }
     }
 
-    /// The inverse A⁻¹.
-    pub fn inverse(&self) -> Mat<f64> {
-        let size = self.factors.nrows();
-        let mut inverse = Mat::<f64>::identity(size, size);
-        self.solve_columns_in_place(&mut inverse);
-        inverse
-    }
-
     /// Solves Aᵀ x = b in place.
     pub(crate) fn solve_transpose_in_place(&self, b: &mut [f64]) {
         let scratch = lu::solve::solve_transpose_in_place_scratch::<usize, f64>(b.len(), 1, SEQUENTIAL);
@@ -153,6 +145,26 @@ impl DenseCholesky {
     pub fn solve_upper_in_place(&self, b: &mut [f64]) {
         solve_upper_triangular_in_place(self.factor.transpose(), column(b), SEQUENTIAL);
     }
+}
+
+/// The inverse of a symmetric matrix that is positive definite but for rounding: by Cholesky, or, where rounding has
+/// made it indefinite, by LU factors.
+pub(crate) fn inverse(matrix: Mat<f64>) -> Mat<f64> {
+    let size = matrix.nrows();
+    let Ok(DenseCholesky { factor }) = DenseCholesky::new(matrix.clone()) else {
+        let mut inverse = Mat::<f64>::identity(size, size);
+        DenseLu::new(&matrix).solve_columns_in_place(&mut inverse);
+        return inverse;
+    };
+    let mut inverse = matrix;
+    let mut memory = MemBuffer::new(llt::inverse::inverse_scratch::<f64>(size, SEQUENTIAL));
+    llt::inverse::inverse(inverse.as_mut(), factor.as_ref(), SEQUENTIAL, MemStack::new(&mut memory));
+    for column in 0..size {
+        for row in column + 1..size {
+            inverse[(column, row)] = inverse[(row, column)];
+        }
+    }
+    inverse
 }
 
 /// A vector as the right side of faer's solves.

@@ -1,26 +1,29 @@
 //! Nested dissection of a graph of points in space, in elimination order.
 //!
 //! ```text
-//! points are split at the median along their longest extent: those before it, those from it on;
-//! separator: points from the median on that have a neighbour before it       order: before, behind, separator
+//! part = one side, other side, separator (no edge joins the sides)        order: one side, other side, separator
 //! ```
-//! On a grid, separators are planes. The order is a postorder of its elimination tree, which the factorisation relies
-//! on when trailing unknowns must stay last.
+//! Separators come from [`separator`](crate::linear::separator). The order is a postorder of its elimination tree, which
+//! the factorisation relies on when trailing unknowns must stay last.
+
+use crate::linear::parallel::join;
+use crate::linear::separator::{LocalGraph, Side, separated};
 
 /// Neighbours of every point, each without itself.
 pub type Graph = [Vec<u32>];
 
 /// Parts of up to this many points are eliminated in the order of their numbers.
 const LEAF: usize = 8;
+/// Parts of at least so many points are worth a second thread.
+const WORTH_A_THREAD: usize = 500;
 
 /// The points in nested dissection order, with those of `last` (each once) at the end, in their order.
 pub fn nested_dissection(points: &[[f64; 3]], graph: &Graph, last: &[usize]) -> Vec<usize> {
-    let mut side = vec![0_u32; points.len()];
-    last.iter().for_each(|&point| side[point] = u32::MAX);
-    let free: Vec<u32> = (0..points.len() as u32).filter(|&point| side[point as usize] == 0).collect();
-    let mut order = Vec::with_capacity(points.len());
-    let mut dissection = Dissection { points, graph, side, parts: 0 };
-    dissection.part(free, &mut order);
+    let mut is_last = vec![false; points.len()];
+    last.iter().for_each(|&point| is_last[point] = true);
+    let free: Vec<u32> = (0..points.len() as u32).filter(|&point| !is_last[point as usize]).collect();
+    let part = Part { graph: LocalGraph::induced(graph, &free), points: free };
+    let mut order: Vec<usize> = part.dissect(points).into_iter().map(|point| point as usize).collect();
     order.extend(last);
     postordered(graph, order, last.len())
 }
@@ -37,48 +40,47 @@ pub fn longest_axis(points: impl Iterator<Item = [f64; 3]>) -> usize {
     (1..3).fold(0, |best, axis| if length(axis) > length(best) * (1.0 + 1e-9) { axis } else { best })
 }
 
-/// The state of a dissection: `side` marks the points before the median by the number of their part.
-struct Dissection<'a> {
-    points: &'a [[f64; 3]],
-    graph: &'a Graph,
-    side: Vec<u32>,
-    parts: u32,
+/// Points that are dissected, ascending, and the edges between them by their places among the points.
+struct Part {
+    points: Vec<u32>,
+    graph: LocalGraph,
 }
 
-impl Dissection<'_> {
-    /// Appends the points of a part in elimination order.
-    fn part(&mut self, mut part: Vec<u32>, order: &mut Vec<usize>) {
-        let points = self.points;
-        let axis = longest_axis(part.iter().map(|&point| points[point as usize]));
-        let along = || part.iter().map(|&point| points[point as usize][axis]);
-        let lowest = along().fold(f64::INFINITY, f64::min);
-        let length = along().fold(f64::NEG_INFINITY, f64::max) - lowest;
-        // Coordinates that differ by rounding are equal: planes of a grid stay together.
-        let key = |point: u32| ((points[point as usize][axis] - lowest) / length * 1e9).round();
-        if part.len() <= LEAF || length <= 0.0 {
-            part.sort_unstable();
-            return order.extend(part.iter().map(|&point| point as usize));
+impl Part {
+    /// The points in elimination order.
+    fn dissect(self, places: &[[f64; 3]]) -> Vec<u32> {
+        if self.points.len() <= LEAF {
+            return self.points;
         }
-        part.sort_unstable_by(|&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
-        let median = key(part[part.len() / 2]);
-        let first = part.partition_point(|&point| key(point) < median);
-        self.parts += 1;
-        let number = self.parts;
-        part[..first].iter().for_each(|&point| self.side[point as usize] = number);
-        let touches =
-            |point: &u32| self.graph[*point as usize].iter().any(|&other| self.side[other as usize] == number);
-        let (mut separator, behind): (Vec<u32>, Vec<u32>) = part.split_off(first).into_iter().partition(touches);
-        if part.is_empty() || behind.is_empty() {
-            // Nothing is separated: the part is thin along every axis.
-            part.extend(behind);
-            part.extend(separator);
-            part.sort_unstable();
-            return order.extend(part.iter().map(|&point| point as usize));
+        let parts = self.graph.components();
+        if parts.len() > 1 {
+            return parts.iter().flat_map(|part| self.part(part).dissect(places)).collect();
         }
-        self.part(part, order);
-        self.part(behind, order);
-        separator.sort_unstable();
-        order.extend(separator.into_iter().map(|point| point as usize));
+        let own: Vec<[f64; 3]> = self.points.iter().map(|&point| places[point as usize]).collect();
+        let sides = separated(&self.graph, &own);
+        let on = |side: Side| -> Vec<u32> {
+            (0..self.points.len() as u32).filter(|&place| sides[place as usize] == side).collect()
+        };
+        let [one, other] = [on(Side::One), on(Side::Other)];
+        if one.is_empty() || other.is_empty() {
+            // Nothing is separated.
+            return self.points;
+        }
+        let separator = on(Side::Separator).into_iter().map(|place| self.points[place as usize]);
+        let separator: Vec<u32> = separator.collect();
+        let is_large = self.points.len() >= WORTH_A_THREAD;
+        let (one, other) = (self.part(&one), self.part(&other));
+        drop(self);
+        let (mut order, other) = join(is_large, || one.dissect(places), || other.dissect(places));
+        order.extend(other);
+        order.extend(separator);
+        order
+    }
+
+    /// The part of some points, given by their places, ascending.
+    fn part(&self, places: &[u32]) -> Self {
+        let points = places.iter().map(|&place| self.points[place as usize]).collect();
+        Self { points, graph: self.graph.part(places) }
     }
 }
 

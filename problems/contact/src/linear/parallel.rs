@@ -29,3 +29,12 @@ pub fn for_parts<'v, V: Send + 'v>(
     let parts: Vec<Mutex<&mut [V]>> = parts.into_iter().map(Mutex::new).collect();
     for_each(parts.len(), &|index| work(index, &mut parts[index].lock().unwrap_or_else(PoisonError::into_inner)));
 }
+
+/// The results of two pieces of work, on two threads where that is worth it.
+pub fn join<A: Send, B: Send>(
+    is_worth_it: bool,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if is_worth_it { rayon::join(first, second) } else { (first(), second()) }
+}

@@ -6,7 +6,8 @@
 
 use super::Along;
 use super::facet::Patch;
-use super::frame::{Bound, Frame, circle};
+use super::frame::{Frame, circle};
+use super::opposite_facets::OppositeFacets;
 use super::pair::{COLUMNS, Raw, Wide, row_sums, visit};
 use super::planar::Planar;
 use super::polygon::Polygon;
@@ -73,7 +74,12 @@ pub fn projected(frame: &Frame, patch: &Patch, facet: usize) -> Planar<f64> {
 
 impl Cover {
     /// Find what covers a slave facet; `None` if it has no area in its plane.
-    pub fn new(facet: usize, slave: &Patch, master: &Patch, bounds: &[Bound], along: Along) -> Option<Self> {
+    pub fn new(
+        facet: usize,
+        slave: &Patch,
+        (master, opposite): (&Patch, &OppositeFacets),
+        along: Along,
+    ) -> Option<Self> {
         let corners = slave.corners(facet);
         let corners = &corners[..slave.count(facet)];
         let frame = Frame::new(corners, along)?;
@@ -81,8 +87,8 @@ impl Cover {
         let whole = planar.tributary();
         let area: f64 = whole.iter().sum();
         let radius = circle(corners).1;
-        let near = bounds.iter().enumerate().filter(|(_, bound)| frame.may_meet(radius, bound));
-        let candidates = near.filter_map(|(other, _)| {
+        let near = opposite.facing(&frame, radius).into_iter();
+        let candidates = near.filter_map(|other| {
             let heights = [slave.corners(facet), master.corners(other)].map(|x| x.map(|y| frame.height(y)));
             Candidate::new(other, &planar, &projected(&frame, master, other), heights)
         });

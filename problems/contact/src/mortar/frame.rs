@@ -84,6 +84,15 @@ impl Frame {
         inside(radius + other.radius) && dot(other.normal, self.normal) < -EDGE_ON
     }
 
+    /// Whether a box may have a facet in it whose projection meets that of the own facet, of this radius.
+    pub fn may_reach(&self, radius: f64, lower: [f64; 3], upper: [f64; 3]) -> bool {
+        let centre: [f64; 3] = std::array::from_fn(|axis| 0.5 * (lower[axis] + upper[axis]));
+        let offset = plus(centre, -1.0, self.centre);
+        // Half of the extent of the box along a direction.
+        let extent = |t: [f64; 3]| (0..3).map(|axis| 0.5 * (upper[axis] - lower[axis]) * t[axis].abs()).sum::<f64>();
+        self.tangents.iter().all(|&t| dot(t, offset).abs() <= radius + extent(t))
+    }
+
     pub fn project(&self, position: [f64; 3]) -> [f64; 2] {
         let offset = plus(position, -1.0, self.centre);
         self.tangents.map(|t| dot(t, offset))
@@ -133,8 +142,8 @@ impl Frame {
 /// What decides quickly whether facets may meet.
 #[derive(Debug, Clone, Copy)]
 pub struct Bound {
-    centre: [f64; 3],
-    radius: f64,
+    pub centre: [f64; 3],
+    pub radius: f64,
     /// Of unit length, outward; zero for a facet without area.
     normal: [f64; 3],
 }

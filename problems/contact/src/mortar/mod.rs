@@ -20,6 +20,7 @@ mod facet;
 mod frame;
 mod gradient;
 mod normals;
+mod opposite_facets;
 mod pair;
 mod planar;
 mod polygon;

@@ -10,6 +10,7 @@ use super::cover::Cover;
 use super::facet::{Face, Patch};
 use super::frame::Bound;
 use super::normals::{unit, vector_areas};
+use super::opposite_facets::OppositeFacets;
 use super::pair::{GAP, Jacobian, NORMAL};
 use crate::linear::parallel;
 use std::sync::OnceLock;
@@ -69,8 +70,8 @@ impl Mortar {
     pub fn new(slave: Face<'_>, master: Face<'_>, along: Along) -> Self {
         let (slave, master) = (Patch::new(slave), Patch::new(master).reversed());
         let bound = |facet: usize| Bound::of_reversed(&master.corners(facet)[..master.count(facet)]);
-        let bounds: Vec<Bound> = (0..master.facets.len()).map(bound).collect();
-        let cover = |facet: usize| Cover::new(facet, &slave, &master, &bounds, along);
+        let opposite = OppositeFacets::new((0..master.facets.len()).map(bound));
+        let cover = |facet: usize| Cover::new(facet, &slave, (&master, &opposite), along);
         let mut covers: Vec<Option<Cover>> = parallel::map(slave.facets.len(), &cover);
         let (starts, columns) = number(&mut covers, &slave, &master);
         let vector_areas = vector_areas(&slave);

@@ -283,7 +283,7 @@ impl OwnSolver {
         start: Option<&ContactWarmStart>,
         tolerance: f64,
     ) -> Result<ContactState<OwnState>, ContactError> {
-        let similar = matches!(start, Some(ContactWarmStart::Displacements(_)));
+        let similar = matches!(start, Some(ContactWarmStart::Forces(_)));
         match &self.order {
             Order::Torn(_) => Ok(self.torn()?.solve(controls, start, tolerance)?.map(OwnState::from)),
             Order::Direct => Ok(self.direct()?.solve(controls, start, tolerance)?.map(OwnState::from)),

@@ -56,11 +56,6 @@ impl Clock {
     }
 }
 
-/// c relative to the assembled diagonal of the contact nodes: the Schur complement's diagonal is about half of it.
-const STIFFNESS_SHARE: f64 = 0.5;
-/// Smallest share of c that flat or tall bricks leave: with less, displacements count too little against forces.
-const SMALLEST_SHARE: f64 = 0.01;
-
 impl TotalFeti {
     /// Tears the bodies of a problem. Where there are several processes, each solves the same problem and works on its
     /// own subdomains, and all of them call the same functions of the solver in the same order.
@@ -158,7 +153,7 @@ impl TotalFeti {
         Stage::CoarseSpace.enter()?;
         let grounded = self.model.grounded_amplitudes(&system, &configuration);
         let space = CoarseSpace::new(&self.model, &system, grounded)?;
-        let stiffness = STIFFNESS_SHARE * self.flat_or_tall_share() * self.model.contact_stiffness(&system);
+        let stiffness = self.model.problem.diagonal_share() * self.model.contact_stiffness(&system);
         let unit = configuration.unit(stiffness);
         let load = unit.first();
         seconds.coarse_space = clock.lap();
@@ -189,12 +184,6 @@ impl TotalFeti {
         let constraints = Arc::clone(&self.model.constraints);
         let state = TornState { positions, rows, space, constraints, solution, displacement, stiffness, load, system };
         Ok((solved_state(solver, state, forces, seconds, work), returned))
-    }
-
-    /// What flat or tall bricks leave of c: the diagonal of K is their largest stiffness, and most displacements of the
-    /// boundary meet a smaller one.
-    fn flat_or_tall_share(&self) -> f64 {
-        self.model.problem.flat_or_tall().map_or(1.0, |ratio| ratio.recip().max(SMALLEST_SHARE))
     }
 
     /// The contact problem of a factored shape; `scales` are c and the load.

@@ -7,8 +7,10 @@ use contact::equilibrium::ContactProblem;
 use contact::error::{ContactError, SceneError};
 use contact::scene::{self, Scene};
 use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornOptions, TotalFeti};
+use scene_file::SceneFile;
 use serde::Serialize;
 use std::fmt;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Bricks and subdomains per edge of each body.
@@ -54,6 +56,57 @@ pub const RATIO: usize = 7;
 const FIXED_SUBDOMAINS: usize = 3;
 /// Most subdomains per edge for which more than one solver is measured.
 const COMPARED: usize = 7;
+
+/// A scene on a mesh.
+#[derive(Debug, Clone)]
+pub enum Subject {
+    /// A scene of the paper on the mesh of a case.
+    Paper(SceneName, Case),
+    /// The first load case of a scene file, on the mesh that the file names.
+    File(PathBuf),
+}
+
+impl Subject {
+    /// The scene.
+    ///
+    /// # Errors
+    /// [`SceneError`] of the file.
+    pub fn scene(&self) -> Result<Scene, SceneError> {
+        match self {
+            Self::Paper(scene, case) => scene.scene(*case),
+            Self::File(file) => {
+                let folder = file.parent().map_or_else(PathBuf::new, PathBuf::from);
+                let case = scene_file::Case::new(&SceneFile::read(file)?, &folder)?;
+                Ok(case.cases[0].scene.clone())
+            }
+        }
+    }
+
+    /// The case; none for a file.
+    pub fn case(&self) -> Option<Case> {
+        match self {
+            Self::Paper(_, case) => Some(*case),
+            Self::File(_) => None,
+        }
+    }
+
+    /// The solvers measured on it.
+    pub fn variants(&self, full: bool) -> Vec<Variant> {
+        match self {
+            Self::Paper(_, case) => case.variants(full),
+            Self::File(_) => vec![Variant::Dirichlet, Variant::Direct],
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Paper(_, case) => write!(f, "{case}"),
+            Self::File(file) => write!(f, "{}", file.file_stem().unwrap_or(file.as_os_str()).display()),
+        }
+    }
+}
 
 impl Case {
     /// N bricks, S subdomains per edge.

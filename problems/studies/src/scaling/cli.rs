@@ -1,10 +1,11 @@
 //! The command line of the study.
 
-use crate::scaling::cases::{Case, SceneName, Variant, option_name};
+use crate::scaling::cases::{Case, SceneName, Subject, Variant, option_name};
 use crate::scaling::{measure, table};
 use clap::Parser;
 use problems::commands::{Failure, arguments, finish, json, notice};
 use serde::Serialize;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Work, time and memory of the contact solvers over growing meshes.
@@ -23,6 +24,9 @@ struct Options {
     /// One case only: N bricks and S subdomains per edge of each body.
     #[arg(long, value_name = "N/S", value_parser = Case::parse)]
     case: Option<Case>,
+    /// The first load case of a scene file on its own mesh, in place of the paper's scenes; may be given several times.
+    #[arg(long, value_name = "SCENE.toml", conflicts_with_all = ["case", "full", "scene"])]
+    file: Vec<PathBuf>,
     /// One solver only.
     #[arg(long, value_enum)]
     variant: Option<Variant>,
@@ -42,13 +46,19 @@ struct ScalingReport {
 }
 
 /// What is measured, in order.
-fn plan(options: &Options) -> Vec<(Case, Variant, usize)> {
-    let cases = options.case.map_or_else(|| Case::all(options.full), |case| vec![case]);
+fn plan(options: &Options) -> Vec<(Subject, Variant, usize)> {
+    let subjects: Vec<Subject> = if options.file.is_empty() {
+        let cases = options.case.map_or_else(|| Case::all(options.full), |case| vec![case]);
+        cases.into_iter().map(|case| Subject::Paper(options.scene, case)).collect()
+    } else {
+        options.file.iter().cloned().map(Subject::File).collect()
+    };
     let mut plan = vec![];
-    for case in cases {
-        for variant in options.variant.map_or_else(|| case.variants(options.full), |variant| vec![variant]) {
+    for subject in subjects {
+        for variant in options.variant.map_or_else(|| subject.variants(options.full), |variant| vec![variant]) {
             let torn = variant.preconditioner().is_some();
-            plan.extend(options.clusters.iter().filter(|&&c| torn || c == 1).map(|&c| (case, variant, c)));
+            let clusters = options.clusters.iter().filter(|&&c| torn || c == 1);
+            plan.extend(clusters.map(|&c| (subject.clone(), variant, c)));
         }
     }
     plan
@@ -65,14 +75,14 @@ fn execute(options: &Options) -> Result<String, Failure> {
     if plan.is_empty() {
         return Err(Failure::Input("--clusters is allowed with solvers on total FETI only".into()));
     }
-    for (case, variant, clusters) in plan {
-        match measure::row(options.scene, case, variant, clusters) {
+    for (subject, variant, clusters) in plan {
+        match measure::row(&subject, variant, clusters) {
             Ok(row) => {
                 notice(&table::progress(&row));
                 rows.push(row);
             }
             Err(Failure::Input(reason)) => return Err(Failure::Input(reason)),
-            Err(failure) => failures.push(format!("{case} {}: {failure}", option_name(&variant))),
+            Err(failure) => failures.push(format!("{subject} {}: {failure}", option_name(&variant))),
         }
     }
     let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);

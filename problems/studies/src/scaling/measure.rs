@@ -1,6 +1,6 @@
 //! Measures one case with one solver; tolerances are relative residuals.
 
-use crate::scaling::cases::{Case, SceneName, Variant, cluster_count};
+use crate::scaling::cases::{Case, Subject, Variant, cluster_count};
 use crate::scaling::memory;
 use contact::contact_shape::{ContactState, ContactWarmStart, Solver};
 use contact::equilibrium::{ContactProblem, StageSeconds, Work};
@@ -67,10 +67,11 @@ pub struct Adjoint {
 /// One case with one solver: keys of the JSON output.
 #[derive(Debug, Serialize)]
 pub struct ScalingRow {
-    scene: SceneName,
-    /// Bricks and subdomains per edge.
+    /// What was measured: N/S or the name of a file.
+    pub name: String,
+    /// Bricks and subdomains per edge; none for a file.
     #[serde(flatten)]
-    pub case: Case,
+    pub case: Option<Case>,
     pub variant: Variant,
     /// Subdomains per edge of a cluster.
     pub clusters: usize,
@@ -119,13 +120,11 @@ impl ScalingRow {
 ///
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
-pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<ScalingRow, Failure> {
+pub fn row(subject: &Subject, variant: Variant, clusters: usize) -> Result<ScalingRow, Failure> {
     memory::reset_peak();
-    let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
+    let problem = Arc::new(ContactProblem::new(subject.scene()?)?);
     let controls = problem.scene.start();
-    let change = seeded_direction(controls.len(), SEED);
-    let nearby: Vec<f64> =
-        controls.iter().zip(&change).map(|(height, entry)| height + CHANGE * height * entry).collect();
+    let nearby = changed(&problem, &controls);
     let clock = Instant::now();
     let mut solver = variant.solver(&problem, clusters).map_err(failure)?;
     let setup_seconds = clock.elapsed().as_secs_f64();
@@ -160,8 +159,8 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
         }
     }
     Ok(ScalingRow {
-        scene,
-        case,
+        name: subject.to_string(),
+        case: subject.case(),
         variant,
         clusters,
         coarse_unknowns: variant.preconditioner().map(|_| 6 * cluster_count(&problem, clusters)),
@@ -173,6 +172,20 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
         peak_memory: memory::peak(),
         failures,
     })
+}
+
+/// Controls that change the shape a little: heights relative to themselves, displacements to the extent of the bodies.
+fn changed(problem: &ContactProblem, controls: &[f64]) -> Vec<f64> {
+    let positions = problem.start_positions();
+    let extent = |axis: usize| {
+        let along = || positions.iter().flat_map(|body| body.iter().map(move |x| x[axis]));
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    let extent = (0..3).map(extent).fold(f64::INFINITY, f64::min);
+    let change = seeded_direction(controls.len(), SEED);
+    let moved =
+        |(control, entry): (&f64, &f64)| control + CHANGE * if *control == 0.0 { extent } else { *control } * entry;
+    controls.iter().zip(change.as_slice()).map(moved).collect()
 }
 
 /// A solver's reason as a failed command.

@@ -20,12 +20,13 @@ pub fn markdown(machine_threads: usize, rows: &[ScalingRow]) -> String {
         + &counts(rows)
         + &seconds(rows)
         + &growth(rows)
-        + &section("Not reached", "N/S | solver | what", failed)
+        + &of_files(rows)
+        + &section("Not reached", "scene | solver | what", failed)
 }
 
 fn name(row: &ScalingRow) -> Vec<String> {
     let clusters = if row.clusters == 1 { String::new() } else { format!(", clusters of {}³", row.clusters) };
-    vec![row.case.to_string(), option_name(&row.variant) + &clusters]
+    vec![row.name.clone(), option_name(&row.variant) + &clusters]
 }
 
 fn counts(rows: &[ScalingRow]) -> String {
@@ -40,7 +41,7 @@ fn counts(rows: &[ScalingRow]) -> String {
         cells.push(row.cold().adjoint.unwrap_or_default().applications.to_string());
         cells
     });
-    let head = "N/S | solver | dofs | rows of B | contact nodes | coarse unknowns | Newton steps, 1e-8 | cold 1e-6 | 1e-8 | \
+    let head = "scene | solver | dofs | rows of B | contact nodes | coarse unknowns | Newton steps, 1e-8 | cold 1e-6 | 1e-8 | \
                 1e-10 | warm 1e-8 | 1e-10 | adjoint 1e-8";
     section("Counts (products with the dual operator)", head, rows)
 }
@@ -60,7 +61,7 @@ fn seconds(rows: &[ScalingRow]) -> String {
         cells.push(or_dash(row.peak_memory, |gib| format!("{gib:.2}")));
         cells
     });
-    let head = "N/S | solver | setup, once | assembly + factors | coarse space | Newton/Krylov | adjoint | cold | warm | \
+    let head = "scene | solver | setup, once | assembly + factors | coarse space | Newton/Krylov | adjoint | cold | warm | \
                 peak GiB";
     section("Seconds and memory (state to 1e-8 and subgradient to 1e-8)", head, rows)
 }
@@ -70,10 +71,23 @@ fn growth(rows: &[ScalingRow]) -> String {
     let of = |least: usize| {
         let alike = rows.iter().filter(move |row| {
             let default = row.variant == Variant::Dirichlet && row.clusters == 1;
-            default && row.case.ratio() == RATIO && row.case.subdomains >= least
+            default && row.case.is_some_and(|case| case.ratio() == RATIO && case.subdomains >= least)
         });
         exponent(alike.map(|row| [row.dofs as f64, row.cold().total_seconds()]))
     };
     let show = |exponent| or_dash(exponent, |exponent: f64| format!("{exponent:.2}"));
     format!("\nExponent of cold seconds in dofs at H/h = {RATIO}: {}; from s = 3 on: {}.\n", show(of(1)), show(of(3)))
+}
+
+/// How time and memory grow over scene files, per solver.
+fn of_files(rows: &[ScalingRow]) -> String {
+    let of = |variant: Variant| {
+        let rows = || rows.iter().filter(move |row| row.case.is_none() && row.variant == variant);
+        let seconds = exponent(rows().map(|row| [row.dofs as f64, row.cold().total_seconds()]))?;
+        let memory = exponent(rows().filter_map(|row| Some([row.dofs as f64, row.peak_memory?])));
+        let memory = or_dash(memory, |exponent: f64| format!("{exponent:.2}"));
+        let name = option_name(&variant);
+        Some(format!("\nExponents of {name} over the files: cold seconds {seconds:.2}, peak memory {memory}.\n"))
+    };
+    [Variant::Dirichlet, Variant::Lumped, Variant::Direct].into_iter().filter_map(of).collect()
 }

@@ -59,13 +59,7 @@ impl<'a> TornContact<'a> {
         let (boundary, constraints) = (&operator.model.problem.boundary, &operator.model.constraints);
         let mut constant = operator.gather(operator.loaded_displacement());
         constant.iter_mut().zip(&constraints.prescribed).for_each(|(jump, prescribed)| *jump -= prescribed);
-        let mut approaches = rows.prescribed_approaches(boundary);
-        for (point, node) in boundary.points.iter().zip(&rows.nodes) {
-            let jump = rows.prescribed_by_trace((point, node), &operator.model.problem.bodies);
-            for (row, direction) in point.rows().zip(&node.directions) {
-                approaches[row] += (0..3).map(|axis| direction[axis] * jump[axis]).sum::<f64>();
-            }
-        }
+        let approaches = rows.prescribed_approaches(boundary, &operator.model.problem.bodies);
         let approaches = approaches.into_iter().zip(constraints.contact_scales(boundary));
         constant.contact_mut().iter_mut().zip(approaches).for_each(|(jump, (approach, nu))| *jump += approach / nu);
         Self {

@@ -132,7 +132,8 @@ impl ClusterFactors {
                 ("generalised inverse of a cluster".into(), "the matrix of its rows is singular".into());
             return Err(ContactError::Factorization { what, reason });
         }
-        let inverse = factor.inverse();
+        let mut inverse = Mat::<f64>::identity(count + amplitudes, count + amplitudes);
+        factor.solve_columns_in_place(&mut inverse);
         let scale = |index: usize| if index < count { stiffness.sqrt() } else { stiffness.sqrt().recip() };
         // Rounding alone makes the inverse differ from its transpose.
         let inverse = Mat::from_fn(count + amplitudes, count + amplitudes, |row, column| {

@@ -7,7 +7,7 @@
 use super::setting::{FIRST, SECOND, THIRD, block, support};
 use contact::body::elasticity::Material;
 use contact::body::mesh::BlockFace;
-use contact::direct::CondensationPattern;
+use contact::direct::DirectSolver;
 use contact::equilibrium::ContactProblem;
 use contact::scene::CounterSurface;
 use nalgebra::{DMatrix, DVector};
@@ -26,21 +26,18 @@ fn fitted(bricks: usize) -> (f64, f64) {
         vec![support(BlockFace::X1Min, FIRST), support(BlockFace::X2Min, SECOND), support(BlockFace::Bottom, THIRD)];
     let grid = scene.bodies[0].block().unwrap().grid();
     let problem = ContactProblem::new(scene).unwrap();
-    let (lower, positions) = (&problem.bodies[0], problem.positions(&[SIDE; 4]).unwrap());
-    let surface: Vec<u32> = problem.boundary.points.iter().map(|point| point.node).collect();
-    let pattern = Arc::new(CondensationPattern::new(lower, &surface).unwrap());
-    let body = pattern.condense(lower, &positions[0]).unwrap();
+    let problem = Arc::new(problem);
+    let contact = DirectSolver::new(Arc::clone(&problem)).unwrap().contact(&[SIDE; 4]).unwrap();
+    let normal: Vec<usize> = problem.boundary.points.iter().map(|point| point.start).collect();
     // A force on the corner of the quarter is four times as large on the whole block.
-    let mut force = vec![0.0; 3 * surface.len()];
-    force[2] = 0.25;
-    let deflection = body.deflection(&force);
+    let deflection = |column: usize| 0.25 * contact.unit * contact.compliance[(normal[column], normal[0])];
     let (mut rows, mut right) = (Vec::new(), Vec::new());
     for (column, (i, j)) in grid.columns().enumerate() {
         let r = SIDE / bricks as f64 * (i as f64).hypot(j as f64);
         if (0.2 * SIDE..=0.7 * SIDE).contains(&r) {
             // Scaled by r: the misfit is relative.
             rows.extend([1.0, r, r.powi(3)]);
-            right.push(r * deflection[3 * column + 2]);
+            right.push(r * deflection(column));
         }
     }
     let matrix = DMatrix::from_row_slice(right.len(), 3, &rows);
