@@ -83,7 +83,7 @@ impl CondensationPattern {
     ) -> Result<CondensedBody, ContactError> {
         let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
         self.piece.check_kernel(&body.name, positions, &values)?;
-        let unturned = body.trace.is_empty().then(Vec::new).unwrap_or_else(|| values.clone());
+        let by_diagonal = (!body.trace.is_empty()).then(|| self.share_of_diagonal(body, positions, &values));
         self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
         self.hold(&mut values);
         let lower = &self.piece.pattern.lower;
@@ -102,9 +102,9 @@ impl CondensationPattern {
         let weights = body.trace.weights(positions);
         let rows = self.rows(body, &weights);
         let (factor, compliance) = self.symbolic.factorize_bordered(&values, &rows)?;
-        let local = match foundation {
-            Some(foundation) => on_foundation(&compliance, foundation),
-            None => self.share_of_diagonal(body, positions, &unturned),
+        let local = match (foundation, by_diagonal) {
+            (Some(foundation), _) => on_foundation(&compliance, foundation),
+            (None, shares) => shares.unwrap_or_default(),
         };
         Ok(CondensedBody { pattern: Arc::clone(self), weights, compliance, foundation, rows, factor, local })
     }
