@@ -40,8 +40,8 @@ pub struct NumericFactor {
 }
 
 impl SymbolicFactor {
-    /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices. Where the order is
-    /// no postorder of its elimination tree, an equivalent one is taken.
+    /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices. Where it is no
+    /// postorder of its elimination tree, an equivalent one is taken.
     ///
     /// # Errors
     /// [`FactorizationError`] when the analysis fails (out of memory, index overflow).

@@ -25,7 +25,7 @@ pub(super) struct Fronts {
 
 /// An elimination order whose supernodes are no postorder.
 pub(super) struct NoPostorder {
-    /// The same elimination, its columns in postorder: `order[new] = old`.
+    /// An order of equal fill that is a postorder: `order[new] = old`.
     pub(super) order: Vec<usize>,
 }
 
@@ -72,7 +72,7 @@ impl Fronts {
         supernodal(&self.analysis)
     }
 
-    /// The same, with the elimination order.
+    /// The analysis, which has the elimination order as well.
     pub(super) fn analysis(&self) -> &SymbolicCholesky<usize> {
         &self.analysis
     }

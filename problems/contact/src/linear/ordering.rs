@@ -3,8 +3,8 @@
 //! ```text
 //! part = one side, other side, separator (no edge joins the sides)        order: one side, other side, separator
 //! ```
-//! Separators come from [`separator`](crate::linear::separator). The order is a postorder of its elimination tree, which
-//! the factorisation relies on when trailing unknowns must stay last.
+//! The order is a postorder of its elimination tree, which the factorisation relies on when trailing unknowns must stay
+//! last.
 
 use crate::linear::parallel::join;
 use crate::linear::separator::{LocalGraph, Side, separated};
@@ -22,7 +22,7 @@ pub fn nested_dissection(points: &[[f64; 3]], graph: &Graph, last: &[usize]) -> 
     let mut is_last = vec![false; points.len()];
     last.iter().for_each(|&point| is_last[point] = true);
     let free: Vec<u32> = (0..points.len() as u32).filter(|&point| !is_last[point as usize]).collect();
-    let part = Part { graph: LocalGraph::induced(graph, &free), points: free };
+    let part = Dissected { graph: LocalGraph::induced(graph, &free), points: free };
     let mut order: Vec<usize> = part.dissect(points).into_iter().map(|point| point as usize).collect();
     order.extend(last);
     postordered(graph, order, last.len())
@@ -41,12 +41,12 @@ pub fn longest_axis(points: impl Iterator<Item = [f64; 3]>) -> usize {
 }
 
 /// Points that are dissected, ascending, and the edges between them by their places among the points.
-struct Part {
+struct Dissected {
     points: Vec<u32>,
     graph: LocalGraph,
 }
 
-impl Part {
+impl Dissected {
     /// The points in elimination order.
     fn dissect(self, places: &[[f64; 3]]) -> Vec<u32> {
         if self.points.len() <= LEAF {

@@ -7,7 +7,6 @@
 //! Moves are made in the order of their gain, each point once, past worse separators; the best one on the way is kept
 //! (Fiduccia and Mattheyses). Coordinates that differ by rounding are equal, so that planes of a grid stay together.
 
-use crate::linear::ordering::Graph;
 use crate::linear::parallel;
 use std::collections::{BinaryHeap, VecDeque};
 
@@ -53,7 +52,7 @@ pub(super) struct LocalGraph {
 
 impl LocalGraph {
     /// The edges of a graph among some of its points.
-    pub(super) fn induced(graph: &Graph, points: &[u32]) -> Self {
+    pub(super) fn induced(graph: &[Vec<u32>], points: &[u32]) -> Self {
         Self::of(graph.len(), points, |point| &graph[point as usize])
     }
 
