@@ -20,13 +20,13 @@ fn warns_of_few_digits(result: &Value) -> bool {
     result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "few-digits")
 }
 
-/// Heights that differ by rounding change Θ by 1e-5 with direct condensation, the default, by 1e-8 with total FETI,
+/// Heights that differ by rounding change Θ by 1e-6 with direct condensation, the default, by 1e-8 with total FETI,
 /// which finds no state for about a third of the seeds.
 #[test]
 fn digits_that_condensation_has_lost_are_named() {
     let change = |solver: &str| {
         let plain = evaluated("lost_digits", &["--solver", solver]);
-        let perturbed = ["--solver", solver, "--height-error", "1.2e-13", "--seed", "9"];
+        let perturbed = ["--solver", solver, "--height-error", "1.2e-13", "--seed", "5"];
         let change = objective(&evaluated("lost_digits", &perturbed)) / objective(&plain) - 1.0;
         (plain, change.abs())
     };
