@@ -145,8 +145,8 @@ impl CompliantBody {
         Response { displacement: multiply_columns(self.compliance(), forces), resultants }
     }
 
-    /// Displacements of the whole body, mm, under loads in equilibrium over it and on its contact dofs, N, one column per
-    /// load; those of the contact dofs are given, one vector per column.
+    /// Displacements of the whole body, mm, under loads in equilibrium over it and on its contact dofs, N, column by
+    /// column; those of the contact dofs are given, one vector per column.
     pub(super) fn extended(&self, mut forces: Mat<f64>, on_contact: &[Vec<f64>], contact: &[Vec<f64>]) -> Mat<f64> {
         for (column, (own, moved)) in on_contact.iter().zip(contact).enumerate() {
             let mut own = own.clone();
