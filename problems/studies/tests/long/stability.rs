@@ -23,8 +23,7 @@ fn random_scenes_have_states_that_the_default_finds() {
     let counts = random_scenes(1, 2000).counts;
     let bad = ["wrong", "panics", "beyond cost", "disagreeing"].map(|name| counts[name]);
     assert_eq!((counts["scenes"], bad), (2000, [0; 4]));
-    // On one plate of 1 : 1000, total FETI alone finds a state, after more work than the default spends.
-    assert_eq!([counts["solvable"], counts["solved"]], [1786, 1785]);
+    assert_eq!([counts["solvable"], counts["solved"]], [1787; 2]);
     assert_eq!([counts["solvable without friction"], counts["solved without friction"]], [663; 2]);
 }
 
