@@ -22,8 +22,8 @@ const INTERIOR_SHARE: f64 = 0.45;
 const SINGLE_PRECISION_SHARE: f64 = 0.5;
 /// Stored stiffness entries per dof (lower triangle of 27 neighbours).
 const STIFFNESS_PER_DOF: f64 = 41.0;
-/// Size of the factor of a whole body over the law of factors: small separators, and the fronts of its elimination.
-const CONDENSED_SHARE: f64 = 0.75;
+/// Size of the factor of a whole body over the law of factors, with the fronts of its elimination.
+const CONDENSED_SHARE: f64 = 0.95;
 /// Share of the available memory that may be used.
 const USABLE: f64 = 0.9;
 
