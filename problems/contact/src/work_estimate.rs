@@ -16,8 +16,8 @@ use crate::solvers::SolverKind;
 /// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of
 /// direct condensation may cost as many operations.
 pub(crate) const MAX_PRODUCTS: usize = 20_000;
-/// Fill of a factor with the contact dofs last, relative to one in free order.
-const CONTACT_LAST: f64 = 1.3;
+/// Fill of a factor with the contact rows as its border, relative to one without.
+const BORDERED: f64 = 1.3;
 /// Newton steps on condensed bodies with all nodes closed that a state is expected to cost.
 const EXPECTED_STEPS: f64 = 5.0;
 /// Newton steps on condensed bodies that are always allowed: nine tenths of the states need fewer.
@@ -47,7 +47,7 @@ pub struct WorkEstimate {
     pub torn_factorization: f64,
     /// One product with the dual operator F.
     pub product: f64,
-    /// Condensation of all bodies and their compliances.
+    /// Condensation of all bodies and their compliances; dense inverses as those of bricks are at worst.
     pub condensation: f64,
     /// One Newton step on condensed bodies with all nodes closed.
     pub condensed_step: f64,
@@ -59,7 +59,7 @@ impl WorkEstimate {
         let size = SceneSize::of(scene);
         let factorization = |values: f64, dofs: f64| 2.0 * values * values / dofs;
         let rows = size.contact_nodes * if scene.has_friction() { 3.0 } else { 1.0 };
-        let whole = |dofs: f64| factorization(CONTACT_LAST * factor_values(dofs), dofs);
+        let whole = |dofs: f64| factorization(BORDERED * factor_values(dofs), dofs);
         let piece = |body: &BodySize| 3.0 * body.piece_nodes;
         Self {
             torn_factorization: size.sum(|body| body.pieces * factorization(factor_values(piece(body)), piece(body))),

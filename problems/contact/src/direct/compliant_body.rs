@@ -11,7 +11,7 @@
 use crate::body::Body;
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::equilibrium::modes::{OwnMotion, RigidScene};
-use crate::equilibrium::{ContactBoundary, ContactPoint, ContactRows};
+use crate::equilibrium::{ContactBoundary, ContactPoint, ContactProblem, ContactRows};
 use crate::error::ContactError;
 use crate::linear::dense::{inverse, multiply, multiply_columns};
 use crate::linear::vector::{add_scaled, dot, norm};
@@ -28,7 +28,7 @@ pub struct CompliantBody {
     pub(super) motions: Vec<Vec<f64>>,
     /// R: these motions over the whole body.
     fields: Vec<Vec<f64>>,
-    /// Ĉ N, mm/N.
+    /// Ĉ N, mm/N; none on a foundation.
     drift: Vec<Vec<f64>>,
     /// The coefficients of these motions.
     coefficients: Vec<OwnMotion>,
@@ -85,10 +85,12 @@ impl CompliantBody {
         let with_contact = |motion: &OwnMotion| (condensed.contact_part(&field(motion)), *motion);
         let (motions, coefficients): (Vec<Vec<f64>>, Vec<OwnMotion>) =
             orthonormal(free.iter().map(with_contact).collect()).into_iter().unzip();
-        let drift: Vec<Vec<f64>> = motions.iter().map(|motion| multiply(&condensed.compliance, motion)).collect();
-        match condensed.foundation {
-            Some(foundation) => remove_foundation(&mut condensed.compliance, &motions, foundation),
-            None => remove_motions(&mut condensed.compliance, &motions, &drift),
+        let mut drift = Vec::new();
+        if let Some(foundation) = condensed.foundation {
+            remove_foundation(&mut condensed.compliance, &motions, foundation);
+        } else {
+            drift.extend(motions.iter().map(|motion| multiply(&condensed.compliance, motion)));
+            remove_motions(&mut condensed.compliance, &motions, &drift);
         }
         let fields = coefficients.iter().map(field).collect();
         Ok(Self { condensed, motions, fields, drift, coefficients })
@@ -118,17 +120,12 @@ impl CompliantBody {
         let mut displacement = Mat::zeros(self.condensed.compliance.nrows(), columns);
         for column in 0..columns {
             let mut moved = self.condensed.contact_part(forces.col_as_slice(column));
-            let by_foundation = self.condensed.foundation.map(|foundation| {
+            if let Some(foundation) = self.condensed.foundation {
                 let forces: Vec<f64> = moved.iter().map(|moved| foundation * moved).collect();
-                multiply(self.compliance(), &forces)
-            });
-            match by_foundation {
-                Some(by_foundation) => add_scaled(&mut moved, 1.0, &by_foundation),
-                None => {
-                    let drifts = self.drift.iter().enumerate();
-                    drifts.for_each(|(mode, drift)| add_scaled(&mut moved, -resultants[(mode, column)], drift));
-                }
+                add_scaled(&mut moved, 1.0, &multiply(self.compliance(), &forces));
             }
+            let drifts = self.drift.iter().enumerate();
+            drifts.for_each(|(mode, drift)| add_scaled(&mut moved, -resultants[(mode, column)], drift));
             for motion in &self.motions {
                 let share = dot(motion, &moved);
                 add_scaled(&mut moved, -share, motion);
@@ -345,16 +342,18 @@ fn orthonormal(motions: Vec<ContactMotion>) -> Vec<ContactMotion> {
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.
-pub(super) fn contact_stiffness(boundary: &ContactBoundary, bodies: &[ContactBody]) -> f64 {
+pub(super) fn contact_stiffness(problem: &ContactProblem, bodies: &[ContactBody]) -> f64 {
+    let boundary = &problem.boundary;
     let of_body = |body: &ContactBody, row: usize| {
         let entries = body.rows.row(row);
         let square: f64 = entries.iter().map(|(_, value)| value * value).sum();
-        let local = &body.stiff().condensed.local;
+        let CondensedBody { local, foundation, .. } = &body.stiff().condensed;
+        let share = foundation.map_or_else(|| problem.diagonal_share(), |_| 1.0);
         let product = entries.iter().flat_map(|(i, a)| {
             let same = entries.iter().filter(move |(j, _)| i / 3 == j / 3);
             same.map(move |(j, b)| a * b * local[i / 3][i % 3][j % 3])
         });
-        (square > 0.0).then(|| product.sum::<f64>() / square)
+        (square > 0.0).then(|| share * product.sum::<f64>() / square)
     };
     let series = |point: &ContactPoint| {
         let own: Vec<f64> = bodies.iter().filter_map(|body| of_body(body, point.start)).collect();

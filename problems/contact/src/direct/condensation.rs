@@ -15,7 +15,6 @@
 use crate::body::elasticity::Material;
 use crate::body::loads::piece_loads;
 use crate::body::{Body, NodalAxes, Piece, TraceWeights};
-use crate::equilibrium::STIFFNESS_SHARE;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::vector::add_scaled;
@@ -53,7 +52,7 @@ pub struct CondensedBody {
     /// B by rows: dof of the body, value.
     rows: Vec<Vec<(usize, f64)>>,
     factor: NumericFactor,
-    /// The stiffness of every contact node whose surroundings rest, about, N/mm.
+    /// The stiffness of every contact node, N/mm: where the others stand on the foundation, else the diagonal of K.
     pub(super) local: Vec<[[f64; 3]; 3]>,
 }
 
@@ -83,29 +82,19 @@ impl CondensationPattern {
     ) -> Result<CondensedBody, ContactError> {
         let mut values = self.piece.assemble(&body.solid, positions, |material| *material);
         self.piece.check_kernel(&body.name, positions, &values)?;
-        let by_diagonal = (!body.trace.is_empty()).then(|| self.share_of_diagonal(body, positions, &values));
+        let diagonal = if body.trace.is_empty() { Vec::new() } else { self.diagonal(body, positions, &values) };
         self.axes.turn_matrix(&self.piece.pattern.lower, &mut values);
         self.hold(&mut values);
-        let lower = &self.piece.pattern.lower;
-        let foundation = body.trace.is_empty().then(|| {
-            let dofs = || self.contact.iter().flat_map(|&node| 3 * node..3 * node + 3);
-            let sum = dofs().map(|dof| values[lower.starts()[dof]]).sum::<f64>();
-            let foundation = sum / (3 * self.contact.len()) as f64;
-            let free = dofs().filter(|&dof| !self.axes.held[dof]);
-            free.for_each(|dof| values[lower.starts()[dof]] += foundation);
-            foundation
-        });
+        let foundation = body.trace.is_empty().then(|| self.stand_on_foundation(&mut values));
         if foundation.is_none() {
             let stiffness = self.piece.pattern.mean_diagonal(&values);
-            sprung(motions).into_iter().for_each(|dof| values[lower.starts()[dof]] += stiffness);
+            let starts = self.piece.pattern.lower.starts();
+            sprung(motions).into_iter().for_each(|dof| values[starts[dof]] += stiffness);
         }
         let weights = body.trace.weights(positions);
         let rows = self.rows(body, &weights);
         let (factor, compliance) = self.symbolic.factorize_bordered(&values, &rows)?;
-        let local = match (foundation, by_diagonal) {
-            (Some(foundation), _) => on_foundation(&compliance, foundation),
-            (None, shares) => shares.unwrap_or_default(),
-        };
+        let local = foundation.map_or(diagonal, |foundation| on_foundation(&compliance, foundation));
         Ok(CondensedBody { pattern: Arc::clone(self), weights, compliance, foundation, rows, factor, local })
     }
 
@@ -127,7 +116,21 @@ impl CondensationPattern {
     /// Forces along the axes in the coordinates of the body, with 0 at held dofs, which supports carry.
     pub(super) fn free_forces(&self, forces: &mut [f64]) {
         self.axes.turn(forces);
+        self.release(forces);
+    }
+
+    /// Sets forces on held dofs to 0.
+    fn release(&self, forces: &mut [f64]) {
         forces.iter_mut().zip(&self.axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
+    }
+
+    /// Adds a foundation, the mean diagonal of K there, at the free contact dofs; returns it, N/mm.
+    fn stand_on_foundation(&self, values: &mut [f64]) -> f64 {
+        let starts = self.piece.pattern.lower.starts();
+        let dofs = || self.contact.iter().flat_map(|&node| 3 * node..3 * node + 3);
+        let foundation = dofs().map(|dof| values[starts[dof]]).sum::<f64>() / (3 * self.contact.len()) as f64;
+        dofs().filter(|&dof| !self.axes.held[dof]).for_each(|dof| values[starts[dof]] += foundation);
+        foundation
     }
 
     /// Decouples held dofs.
@@ -142,9 +145,9 @@ impl CondensationPattern {
         }
     }
 
-    /// A share of the blocks of K on the diagonal at the contact nodes, turned; a nearly incompressible material is
-    /// replaced by its compressible neighbour, since volume does not resist contact forces.
-    fn share_of_diagonal(&self, body: &Body, positions: &[[f64; 3]], stiffness: &[f64]) -> Vec<[[f64; 3]; 3]> {
+    /// The blocks of K on the diagonal at the contact nodes, turned; a nearly incompressible material is replaced by its
+    /// compressible neighbour, since volume does not resist contact forces.
+    fn diagonal(&self, body: &Body, positions: &[[f64; 3]], stiffness: &[f64]) -> Vec<[[f64; 3]; 3]> {
         let is_near = body.solid.materials().iter().any(|material| material.compressible_neighbour().is_some());
         let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
         let other = is_near.then(|| self.piece.assemble(&body.solid, positions, near));
@@ -156,7 +159,7 @@ impl CondensationPattern {
             let block: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|j| entry(node, row, j)));
             let half = block.map(|row| self.axes.turn_at(node, row));
             let columns: [[f64; 3]; 3] = std::array::from_fn(|j| half.map(|row| row[j]));
-            columns.map(|column| self.axes.turn_at(node, column).map(|entry| STIFFNESS_SHARE * entry))
+            columns.map(|column| self.axes.turn_at(node, column))
         };
         self.contact.iter().map(of_node).collect()
     }
@@ -246,7 +249,7 @@ impl CondensedBody {
             axes.turn(&mut image);
             add_scaled(&mut force, -1.0, &image);
         }
-        force.iter_mut().zip(&axes.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = 0.0);
+        self.pattern.release(&mut force);
         force
     }
 

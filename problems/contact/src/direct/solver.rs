@@ -139,7 +139,7 @@ impl DirectSolver {
             ContactBody { body, load, rows }
         };
         let bodies: Vec<ContactBody> = bodies.map(with_rows).collect();
-        let stiffness = contact_stiffness(boundary, &bodies);
+        let stiffness = contact_stiffness(&self.problem, &bodies);
         let unit = configuration.unit(stiffness);
         let units = [if unit.first() > 0.0 { unit.first() } else { 1.0 }, stiffness.recip()];
         let rows = Arc::clone(&configuration.rows);

@@ -49,7 +49,6 @@ pub use facets::ContactFacets;
 pub use node_rows::{NodeRows, RowChange, RowSensitivities};
 pub use preview::{BodyPreview, Preview};
 pub use problem::ContactProblem;
-pub(crate) use problem::STIFFNESS_SHARE;
 pub use rows::ContactRows;
 pub use solved_body::SolvedBody;
 pub use stage::{Stage, TARGET as STAGE_TARGET};

@@ -20,7 +20,7 @@ use crate::shape::{AdmissibleSet, BodyMap, Positions, ShapeMap};
 use std::sync::Arc;
 
 /// c relative to the assembled diagonal of the contact nodes: the Schur complement's diagonal is about half of it.
-pub(crate) const STIFFNESS_SHARE: f64 = 0.5;
+const STIFFNESS_SHARE: f64 = 0.5;
 /// Smallest share of c that flat or tall bricks leave: with less, displacements count too little against forces.
 const SMALLEST_SHARE: f64 = 0.01;
 

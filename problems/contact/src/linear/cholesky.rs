@@ -9,7 +9,7 @@ use crate::linear::multifrontal::Elimination;
 use crate::linear::real::Real;
 use crate::linear::supernodal;
 use crate::linear::symmetric::LowerPattern;
-use crate::linear::update::Triangle;
+use crate::linear::triangle::Triangle;
 use crate::linear::vector::{add_scaled, norm};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::Perm;
@@ -98,11 +98,6 @@ impl SymbolicFactor {
             .factorize(&mut values)
             .map_err(|_| failure("Cholesky factorisation", "not positive definite".into()))?;
         Ok((NumericFactor { symbolic: Arc::clone(self), values, single: OnceLock::new() }, border))
-    }
-
-    /// Number of stored entries of L.
-    pub fn entry_count(&self) -> usize {
-        self.fronts.symbolic().len_val()
     }
 
     /// Solves L Lᵀ x = b in place for the values of a factor, in either precision; columns of b are right sides.

@@ -20,7 +20,7 @@ mod separator;
 pub(crate) mod sums;
 mod supernodal;
 pub mod symmetric;
-mod update;
+mod triangle;
 pub mod vector;
 
 pub use error::FactorizationError;

@@ -12,7 +12,7 @@
 use crate::linear::border::Border;
 use crate::linear::fronts::Fronts;
 use crate::linear::parallel;
-use crate::linear::update::{TILE, Triangle};
+use crate::linear::triangle::{TILE, Triangle};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::matmul;
