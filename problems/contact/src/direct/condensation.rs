@@ -145,8 +145,8 @@ impl CondensationPattern {
         }
     }
 
-    /// The blocks of K on the diagonal at the contact nodes, turned; a nearly incompressible material is replaced by its
-    /// compressible neighbour, since volume does not resist contact forces.
+    /// The blocks of K on the diagonal at the contact nodes, turned; a nearly incompressible material is replaced by
+    /// its compressible neighbour, since volume does not resist contact forces.
     fn diagonal(&self, body: &Body, positions: &[[f64; 3]], stiffness: &[f64]) -> Vec<[[f64; 3]; 3]> {
         let is_near = body.solid.materials().iter().any(|material| material.compressible_neighbour().is_some());
         let near = |material: &Material| material.compressible_neighbour().unwrap_or(*material);
