@@ -8,12 +8,11 @@
 //! Where the closed nodes leave a motion free, M is singular: a proximal spring regularises its factor, and refinement
 //! against M itself takes the spring off again wherever M determines the answer.
 
+use crate::direct::active_system::ActiveFactor;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::displacement_load::CondensedLoad;
-use crate::direct::newton::SPRINGS;
-use crate::direct::newton::active_system;
-use crate::equilibrium::law::{Friction, Linearization};
-use crate::linear::dense::{DenseLu, multiply};
+use crate::equilibrium::law::Linearization;
+use crate::linear::dense::multiply;
 use crate::linear::vector::add_scaled;
 use nalgebra::DVector;
 
@@ -27,32 +26,25 @@ pub(super) struct CondensedAdjoint {
     pub(super) error_terms: Vec<f64>,
 }
 
-/// The adjoint at a state for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies; no loads if J does not depend on u.
+/// The adjoint at a state, with the factor of its Newton matrix, for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies; no loads if J does not depend on u.
 pub(super) fn adjoint(
     contact: &CompliantContact,
-    unknowns: &[f64],
-    linearizations: &[Linearization],
+    (unknowns, linearizations): (&[f64], &[Linearization]),
+    active: &ActiveFactor,
     direction: &[f64],
     loads: &[CondensedLoad],
 ) -> CondensedAdjoint {
     let (direction, resultant) = condensed_dual(contact, direction, loads);
     let boundary = &contact.problem.boundary;
     let (count, motions) = (contact.row_count(), contact.resultant.len());
-    let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);
-    let size = active.rows.len();
-    let matrix = active.matrix.transpose().to_owned();
-    let mut sprung = matrix.clone();
-    for motion in size..size + motions {
-        sprung[(motion, motion)] = SPRINGS[0];
-    }
-    let mut solution: Vec<f64> = active.rows.iter().map(|&row| direction[row] * contact.load).collect();
-    solution.extend(resultant);
-    DenseLu::new(&sprung).solve_refined(&matrix, &mut solution);
+    let mut right: Vec<f64> = active.rows().iter().map(|&row| direction[row] * contact.load).collect();
+    right.extend(resultant);
+    let solution = active.solve_transposed(contact, &right);
     let mut psi = vec![0.0; count + motions];
-    for (&row, value) in active.rows.iter().zip(&solution) {
+    for (&row, value) in active.rows().iter().zip(&solution) {
         psi[row] = *value;
     }
-    psi[count..].copy_from_slice(&solution[size..]);
+    psi[count..].copy_from_slice(&solution[active.rows().len()..]);
     let mut eta = vec![0.0; count];
     for (node, linearization) in boundary.points.iter().zip(linearizations) {
         let block = linearization.derivative(node.row_count(), node.friction);

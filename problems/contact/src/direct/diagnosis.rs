@@ -4,9 +4,9 @@
 //! M (dλ; da) = e dΨ on the slip rows,   M: Newton's matrix with slip bounds given (Tresca),   Φ′ = 𝓕 ∂λ_N/∂Ψ over the sliding nodes
 //! ```
 
+use crate::direct::active_system::{ActiveSystem, Kept};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::newton::SPRINGS;
-use crate::direct::newton::active_system;
 use crate::equilibrium::certificate::wedging;
 use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::{Friction, Linearization};
@@ -22,8 +22,8 @@ pub(super) fn diagnose(
     contact: &CompliantContact,
     linearizations: &[Linearization],
 ) -> Result<Diagnosis, ContactError> {
-    let newton = active_system(contact, linearizations, 0.0, Friction::Coulomb);
-    let condition = spectral_condition(&newton.matrix)
+    let newton = ActiveSystem::new(contact, linearizations, 0.0, Friction::Coulomb, Kept::All);
+    let condition = spectral_condition(newton.matrix())
         .ok_or(ContactError::NotFinite { what: "condition number of Newton's matrix" })?;
     let contraction = contraction(contact, linearizations);
     if !contraction.is_finite() {
@@ -63,24 +63,21 @@ pub(super) fn estimate_contraction(
     let sliding = Linearization::Slip { direction: [1.0, 0.0], ratio: 0.0 };
     let all_sliding: Vec<Linearization> =
         closed.iter().map(|&closed| if closed { sliding } else { Linearization::Open }).collect();
-    let mut system = active_system(contact, &all_sliding, 0.0, Friction::Tresca);
-    for motion in system.rows.len()..system.matrix.nrows() {
-        system.matrix[(motion, motion)] = SPRINGS[0];
-    }
-    let (factors, size) = (DenseLu::new(&system.matrix), system.matrix.nrows());
+    let system = ActiveSystem::new(contact, &all_sliding, 0.0, Friction::Tresca, Kept::All).with_springs(SPRINGS[0]);
+    let (factors, size) = (DenseLu::new(system.matrix()), system.matrix().nrows());
     // Per row: 𝓕 for normal rows, none for tangential ones.
     let mut friction_of = vec![None; boundary.row_count];
     boundary.points.iter().for_each(|point| friction_of[point.start] = Some(point.friction));
     let tangential = |values: &mut [f64]| {
         for (position, value) in values.iter_mut().enumerate() {
-            let belongs = system.rows.get(position).is_some_and(|&row| friction_of[row].is_none());
+            let belongs = system.rows().get(position).is_some_and(|&row| friction_of[row].is_none());
             *value = if belongs { *value } else { 0.0 };
         }
     };
     // 𝓕 times the normal forces.
     let bounds = |values: &mut [f64]| {
         for (position, value) in values.iter_mut().enumerate() {
-            *value *= system.rows.get(position).and_then(|&row| friction_of[row]).unwrap_or(0.0);
+            *value *= system.rows().get(position).and_then(|&row| friction_of[row]).unwrap_or(0.0);
         }
     };
     let mut forces: Vec<f64> = (0..size).map(|position| 1.0 + 0.5 * (1.7 * position as f64).sin()).collect();
@@ -122,10 +119,8 @@ struct BoundChange {
 impl BoundChange {
     fn new(contact: &CompliantContact, linearizations: &[Linearization]) -> Self {
         let boundary = &contact.problem.boundary;
-        let mut tresca = active_system(contact, linearizations, 0.0, Friction::Tresca);
-        for motion in tresca.rows.len()..tresca.matrix.nrows() {
-            tresca.matrix[(motion, motion)] = SPRINGS[0];
-        }
+        let tresca = ActiveSystem::new(contact, linearizations, 0.0, Friction::Tresca, Kept::All);
+        let tresca = tresca.with_springs(SPRINGS[0]);
         let mut sliding = Vec::new();
         let mut position = 0;
         for (node, linearization) in boundary.points.iter().zip(linearizations) {
@@ -134,7 +129,7 @@ impl BoundChange {
             }
             position += if *linearization == Linearization::Open { 0 } else { node.row_count() };
         }
-        let (factors, size) = (DenseLu::new(&tresca.matrix), tresca.matrix.nrows());
+        let (factors, size) = (DenseLu::new(tresca.matrix()), tresca.matrix().nrows());
         Self { sliding, factors, size }
     }
 

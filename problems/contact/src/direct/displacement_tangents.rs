@@ -8,7 +8,7 @@
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::tangents::{CondensedTangents, ShapeLoads};
-use crate::linear::dense::multiply;
+use crate::linear::dense::multiply_columns;
 use crate::linear::vector::add_scaled;
 use faer::Mat;
 
@@ -30,10 +30,12 @@ pub(super) fn displacement_tangents(
         let own = forces.next_if(|(shaped, _)| *shaped == number);
         let right = own.map_or_else(|| Mat::zeros(pattern.piece.dof_count(), count), |(_, forces)| forces);
         let (mut on_contact, mut moved) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        for column in 0..count {
-            let mut held = body.contact_forces(&found.tangents.forces[column]);
+        let held: Vec<Vec<f64>> = found.tangents.forces.iter().map(|forces| body.contact_forces(forces)).collect();
+        let columns = Mat::from_fn(body.load.free.len(), count, |dof, column| held[column][dof]);
+        let pushed = multiply_columns(body.stiff().compliance(), &columns);
+        for (column, mut held) in held.into_iter().enumerate() {
             let mut u = loads.responses[number].displacement.col_as_slice(column).to_vec();
-            add_scaled(&mut u, 1.0, &multiply(body.stiff().compliance(), &held));
+            add_scaled(&mut u, 1.0, pushed.col_as_slice(column));
             for (motion, amplitude) in body.stiff().motions.iter().zip(&amplitudes[column][number]) {
                 add_scaled(&mut u, *amplitude, motion);
             }

@@ -9,15 +9,15 @@
 //! is the length that one step of iterative refinement would move the contact nodes by. It does not count where
 //! equilibrium alone determines the forces, since condensed loads keep the resultants of the loads; Δλ shows it.
 
+use crate::direct::active_system::ActiveFactor;
 use crate::direct::compliant_contact::CompliantContact;
-use crate::direct::newton::exact_step;
 use crate::equilibrium::law::Linearization;
 use crate::linear::vector::norm;
 
 /// |Δλ| over the load where the contact dofs of the bodies move by δ, mm; not finite where δ is not.
 pub(super) fn change_of_forces(
     contact: &CompliantContact,
-    linearizations: &[Linearization],
+    (linearizations, active): (&[Linearization], &ActiveFactor),
     delta: &[Vec<f64>],
 ) -> f64 {
     let mut moved = vec![0.0; contact.row_count()];
@@ -25,14 +25,16 @@ pub(super) fn change_of_forces(
         body.rows.add_jumps(delta, 1.0 / (contact.unit * contact.load), &mut moved);
     }
     let boundary = &contact.problem.boundary;
-    let mut residual = vec![0.0; contact.row_count() + contact.resultant.len()];
-    for (node, linearization) in boundary.points.iter().zip(linearizations) {
+    let mut residual = Vec::with_capacity(active.rows().len() + contact.resultant.len());
+    let points = boundary.points.iter().zip(linearizations);
+    for (node, linearization) in points.filter(|(_, linearization)| **linearization != Linearization::Open) {
         let count = node.row_count();
         let block = linearization.derivative(count, node.friction);
-        for (row, coefficients) in block.iter().enumerate().take(count) {
+        for coefficients in block.iter().take(count) {
             let terms = coefficients[..count].iter().zip(&moved[node.start..]);
-            residual[node.start + row] = -terms.map(|(d, moved)| d * moved).sum::<f64>();
+            residual.push(-terms.map(|(d, moved)| d * moved).sum::<f64>());
         }
     }
-    norm(&exact_step(contact, linearizations, &residual)[..contact.row_count()])
+    residual.resize(active.rows().len() + contact.resultant.len(), 0.0);
+    norm(&active.solve(contact, residual)[..active.rows().len()])
 }

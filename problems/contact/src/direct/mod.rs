@@ -5,6 +5,7 @@
 //! ```
 //! The solution uses nothing of total FETI: neither its constraint rows, nor its coarse space, nor its Krylov methods.
 
+mod active_system;
 mod adjoint;
 mod compliant_body;
 mod compliant_contact;

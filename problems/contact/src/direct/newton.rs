@@ -8,12 +8,12 @@
 //! step. Once the residual comes near the rounding of d + R a, the bodies are moved by these motions: d := d + R a, a
 //! := 0.
 
+use crate::direct::active_system::{ActiveFactor, ActiveSystem, Kept};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::equilibrium::Stage;
 use crate::equilibrium::law::{Friction, Linearization};
-use crate::linear::dense::{DenseLu, multiply};
+use crate::linear::dense::multiply;
 use crate::linear::vector::norm;
-use faer::Mat;
 
 /// Proximal springs, relative to the mean contact stiffness, tried one after the other.
 pub(super) const SPRINGS: [f64; 2] = [1e-8, 1e-6];
@@ -39,13 +39,6 @@ pub(super) struct Problem {
     pub(super) tolerance: f64,
     /// Newton steps allowed in all, those before it included.
     pub(super) max_steps: usize,
-}
-
-/// Newton's matrix over the rows of the nodes that are not open, then the motions.
-#[derive(Debug)]
-pub(super) struct ActiveSystem {
-    pub(super) rows: Vec<usize>,
-    pub(super) matrix: Mat<f64>,
 }
 
 /// Newton's method from unknowns near an equilibrium, in so many steps, with their number; none where it diverges.
@@ -112,16 +105,6 @@ fn search(contact: &CompliantContact, from: &[f64], step: &[f64], size: f64, del
     at(1.0)
 }
 
-/// M⁻¹ r without contact compliance, with the smallest spring: relative to the mean compliance, since a spring that is
-/// stiff beside bodies that bend would take a share of r.
-pub(super) fn exact_step(contact: &CompliantContact, linearizations: &[Linearization], residual: &[f64]) -> Vec<f64> {
-    let points = &contact.problem.boundary.points;
-    let normal = points.iter().map(|point| contact.compliance[(point.start, point.start)]).sum::<f64>();
-    let spring = SPRINGS[0] * (points.len() as f64 / normal).min(1.0);
-    let problem = Problem { delta: 0.0, spring, tolerance: TIGHTEST, max_steps: 1 };
-    step(contact, linearizations, residual, problem)
-}
-
 /// M⁻¹ r for the derivative M with a spring: open nodes first, whose rows are those of the identity.
 pub(super) fn step(
     contact: &CompliantContact,
@@ -139,8 +122,9 @@ pub(super) fn step(
         }
     }
     let product = multiply(&contact.compliance, &step[..count]);
-    let mut active = active_system(contact, linearizations, problem.delta, Friction::Coulomb);
-    let mut right: Vec<f64> = Vec::with_capacity(active.matrix.nrows());
+    let system = ActiveSystem::new(contact, linearizations, problem.delta, Friction::Coulomb, Kept::Coupled);
+    let active = ActiveFactor::new(system.with_springs(problem.spring * rho), None);
+    let mut right: Vec<f64> = Vec::with_capacity(active.rows().len() + residual.len() - count);
     for (node, linearization) in boundary.points.iter().zip(linearizations) {
         if *linearization == Linearization::Open {
             continue;
@@ -152,54 +136,12 @@ pub(super) fn step(
         }));
     }
     for (column, resultant) in residual[count..].iter().enumerate() {
-        let index = right.len();
         let open: f64 = (0..count).map(|row| contact.motions[(row, column)] * step[row]).sum();
-        active.matrix[(index, index)] = problem.spring * rho;
         right.push(resultant - open);
     }
-    DenseLu::new(&active.matrix).solve_refined(&active.matrix, &mut right);
-    for (row, value) in active.rows.iter().copied().chain(count..residual.len()).zip(&right) {
+    let solution = active.solve(contact, right);
+    for (row, value) in active.rows().iter().copied().chain(count..residual.len()).zip(&solution) {
         step[row] = *value;
     }
     step
-}
-
-/// The derivative over the rows of the nodes that are not open, then the motions.
-pub(super) fn active_system(
-    contact: &CompliantContact,
-    linearizations: &[Linearization],
-    delta: f64,
-    friction: Friction,
-) -> ActiveSystem {
-    let points = || contact.problem.boundary.points.iter().zip(linearizations);
-    let closed = || points().filter(|(_, linearization)| **linearization != Linearization::Open);
-    let rows: Vec<usize> = closed().flat_map(|(node, _)| node.rows()).collect();
-    let (count, motions) = (rows.len(), contact.resultant.len());
-    let rho = 1.0 / (1.0 + delta);
-    let mut matrix = Mat::<f64>::zeros(count + motions, count + motions);
-    let mut first = 0;
-    for (node, linearization) in closed() {
-        let size = node.row_count();
-        let block = linearization.derivative(size, friction.of(node));
-        for (i, coefficients) in block.iter().enumerate().take(size) {
-            matrix[(first + i, first + i)] += 1.0;
-            for (j, &d) in coefficients.iter().enumerate().take(size).filter(|(_, d)| **d != 0.0) {
-                matrix[(first + i, first + j)] -= d * rho;
-                let compliance = contact.compliance.col_as_slice(node.start + j);
-                for (column, &other) in rows.iter().enumerate() {
-                    matrix[(first + i, column)] += d * rho * compliance[other];
-                }
-                for column in 0..motions {
-                    matrix[(first + i, count + column)] -= d * rho * contact.motions[(node.start + j, column)];
-                }
-            }
-        }
-        first += size;
-    }
-    for column in 0..motions {
-        for (index, &row) in rows.iter().enumerate() {
-            matrix[(count + column, index)] = contact.motions[(row, column)];
-        }
-    }
-    ActiveSystem { rows, matrix }
 }

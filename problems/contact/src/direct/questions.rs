@@ -29,7 +29,8 @@ impl DirectSolver {
         Stage::Adjoint.enter()?;
         let solution = &state.solution;
         let loads = displacements.map_or_else(Vec::new, |displacements| self.condensed_loads(state, displacements));
-        let adjoint = adjoint(&state.contact, &solution.unknowns, &solution.linearizations, direction, &loads);
+        let at = (solution.unknowns.as_slice(), solution.linearizations.as_slice());
+        let adjoint = adjoint(&state.contact, at, state.active(), direction, &loads);
         let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
         let value_error = value_error.with_displacements(loads.iter().map(|load| load.size).sum());
         let mut loads: Vec<Vec<f64>> = loads.into_iter().map(|load| load.full).collect();
@@ -75,7 +76,7 @@ impl DirectSolver {
         let kept = (of == TangentsOf::Displacements).then(|| forces.clone());
         let loads = self.shape_loads(state, (&velocities, traces.as_ref()), forces);
         let linearizations = &state.solution.linearizations;
-        let mut found = tangents(&state.contact, linearizations, &loads);
+        let mut found = tangents(&state.contact, (linearizations, state.active()), &loads);
         found.tangents.displacements = kept.map(|forces| displacement_tangents(&state.contact, forces, &loads, &found));
         let CondensedTangents { tangents, .. } = found;
         let displacements = tangents.displacements.iter().flatten();
@@ -122,7 +123,8 @@ impl DirectSolver {
         let (contact, solution) = (&state.contact, &state.solution);
         let parts = contact.bodies.iter().zip(self.problem.bodies.iter().zip(&state.positions));
         let delta = parts.map(|(own, (body, positions))| own.refinement(body, positions, &solution.forces));
-        Ok(change_of_forces(contact, &solution.linearizations, &delta.collect::<Vec<_>>()))
+        let at = (solution.linearizations.as_slice(), state.active());
+        Ok(change_of_forces(contact, at, &delta.collect::<Vec<_>>()))
     }
 
     /// All bodies of a solved shape, in the order of the scene. Nothing is torn: each body is one subdomain.

@@ -1,5 +1,6 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
+use crate::direct::active_system::{ActiveFactor, ActiveSystem, Kept};
 use crate::direct::compliant_body::{BodyLoad, BodyRows, CompliantBody, ContactBody, contact_stiffness};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::CondensationPattern;
@@ -7,7 +8,8 @@ use crate::direct::condensation_key::{CondensationKey, CondensedShelf};
 use crate::direct::continuation::Reached;
 use crate::direct::continuation::equilibrium;
 use crate::direct::forces::{CondensedSolution, forces};
-use crate::direct::newton::FLOOR_REACHED;
+use crate::direct::newton::{FLOOR_REACHED, SPRINGS};
+use crate::equilibrium::law::Friction;
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactState, ContactWarmStart, ForceUnit, Positions, Stage, Work,
 };
@@ -50,6 +52,8 @@ pub struct DirectState {
     pub(super) solution: CondensedSolution,
     /// Force that residuals are relative to, N; zero for bodies at rest.
     pub(super) load: f64,
+    /// The factor of Newton's matrix, once a derivative has been asked for.
+    active: OnceLock<ActiveFactor>,
     /// Displacements over the dofs of the bodies, once they have been asked for.
     pub(super) displacements: Vec<OnceLock<Vec<f64>>>,
 }
@@ -172,7 +176,7 @@ impl DirectSolver {
         let forces = forces(&contact, &solution, &configuration);
         forces.residuals.check(tolerance)?;
         let Configuration { positions, rows, .. } = configuration;
-        let state = DirectState { positions, contact, solution, load, displacements };
+        let state = DirectState { positions, contact, solution, load, active: OnceLock::new(), displacements };
         Ok(ContactState {
             forces,
             rows,
@@ -277,10 +281,26 @@ impl DirectSolver {
 }
 
 impl DirectState {
+    /// The factor of Newton's matrix, with the smallest springs.
+    pub(super) fn active(&self) -> &ActiveFactor {
+        self.active.get_or_init(|| {
+            let (contact, linearizations) = (&self.contact, &self.solution.linearizations);
+            let system = ActiveSystem::new(contact, linearizations, 0.0, Friction::Coulomb, Kept::Coupled);
+            ActiveFactor::new(system, Some(smallest_spring(contact)))
+        })
+    }
+
     /// Contact forces and free motions, from which a similar shape can be solved.
     pub fn warm_start(&self) -> ContactWarmStart {
         ContactWarmStart::Forces(self.contact.own_unknowns(&self.solution.unknowns))
     }
+}
+
+/// A spring relative to the mean compliance: one that is stiff beside bodies that bend would take a share of the load.
+fn smallest_spring(contact: &CompliantContact) -> f64 {
+    let points = &contact.problem.boundary.points;
+    let normal = points.iter().map(|point| contact.compliance[(point.start, point.start)]).sum::<f64>();
+    SPRINGS[0] * (points.len() as f64 / normal).min(1.0)
 }
 
 /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.

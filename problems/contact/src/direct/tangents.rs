@@ -7,14 +7,12 @@
 //! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of bodies of fixed shape do not change; what
 //! those of other bodies change is part of r.
 
+use crate::direct::active_system::ActiveFactor;
 use crate::direct::compliant_body::{ContactBody, Response};
 use crate::direct::compliant_contact::CompliantContact;
-use crate::direct::newton::SPRINGS;
-use crate::direct::newton::active_system;
 use crate::equilibrium::Tangents;
-use crate::equilibrium::law::{Friction, Linearization};
-use crate::linear::dense::{DenseLu, multiply, multiply_columns};
-use crate::linear::vector::norm;
+use crate::equilibrium::law::Linearization;
+use crate::linear::dense::{multiply, multiply_columns};
 use faer::Mat;
 use nalgebra::DVector;
 
@@ -38,21 +36,16 @@ pub(super) struct CondensedTangents {
     pub amplitudes: Vec<Vec<f64>>,
 }
 
-/// Tangents of forces and openings at given derivatives, for what changes of the shape do to the contact problem.
+/// Tangents of forces and openings at given derivatives, with the factor of Newton's matrix there, for what changes of the shape do to the contact problem.
 pub(super) fn tangents(
     contact: &CompliantContact,
-    linearizations: &[Linearization],
+    (linearizations, active): (&[Linearization], &ActiveFactor),
     loads: &ShapeLoads,
 ) -> CondensedTangents {
     let ShapeLoads { responses, approaches, .. } = loads;
     let boundary = &contact.problem.boundary;
     let (count, motions) = (contact.row_count(), contact.resultant.len());
-    let active = active_system(contact, linearizations, 0.0, Friction::Coulomb);
-    let size = active.rows.len();
-    let mut sprung = active.matrix.clone();
-    for motion in size..size + motions {
-        sprung[(motion, motion)] = SPRINGS[0];
-    }
+    let size = active.rows().len();
     let driving = |(column, approach): (usize, &Vec<f64>)| driving(contact, responses, column, approach);
     let driven: Vec<(Vec<f64>, Vec<f64>)> = approaches.iter().enumerate().map(driving).collect();
     let mut right = Mat::<f64>::zeros(size + motions, approaches.len());
@@ -71,22 +64,23 @@ pub(super) fn tangents(
         }
         right[size..].copy_from_slice(resultant);
     }
-    let (solution, residual) = refined(&DenseLu::new(&sprung), &active.matrix, right);
-    let (forces, openings) = (Vec::new(), Vec::new());
+    let (solution, residual) = active.solve_columns(contact, &right);
+    let mut forces = Mat::<f64>::zeros(count, approaches.len());
+    for column in 0..approaches.len() {
+        let (own, target) = (solution.col_as_slice(column), forces.col_as_slice_mut(column));
+        active.rows().iter().zip(own).for_each(|(&row, force)| target[row] = *force);
+    }
+    let products = multiply_columns(&contact.compliance, &forces);
     let areas = loads.areas.clone();
-    let mut tangents = Tangents { forces, openings, areas, displacements: None, residual, applications: 0 };
+    let (of_forces, openings) = (Vec::new(), Vec::new());
+    let mut tangents = Tangents { forces: of_forces, openings, areas, displacements: None, residual, applications: 0 };
     let mut amplitudes = Vec::new();
     for (column, (constant, _)) in driven.iter().enumerate() {
         let solution = solution.col_as_slice(column);
-        let mut forces = vec![0.0; count];
-        for (&row, value) in active.rows.iter().zip(solution) {
-            forces[row] = *value;
-        }
-        let (product, rigid) = (multiply(&contact.compliance, &forces), multiply(&contact.motions, &solution[size..]));
+        let (product, rigid) = (products.col_as_slice(column), multiply(&contact.motions, &solution[size..]));
         let opening = |start: usize| (constant[start] - product[start] + rigid[start]) * contact.unit * contact.load;
         tangents.openings.push(boundary.points.iter().map(|point| opening(point.start)).collect());
-        forces.iter_mut().for_each(|force| *force *= contact.load);
-        tangents.forces.push(forces);
+        tangents.forces.push(forces.col_as_slice(column).iter().map(|force| force * contact.load).collect());
         amplitudes.push(solution[size..].to_vec());
     }
     CondensedTangents { tangents, amplitudes }
@@ -107,29 +101,4 @@ fn driving(
     }
     constant.iter_mut().for_each(|d| *d /= contact.unit * contact.load);
     (constant, contact.resultants_of(&DVector::from_vec(own)))
-}
-
-/// M⁻¹ B by a factor of a matrix near M, refined against M; also the largest relative residual of a column.
-fn refined(factor: &DenseLu, matrix: &Mat<f64>, right: Mat<f64>) -> (Mat<f64>, f64) {
-    let mut solution = right.clone();
-    factor.solve_columns_in_place(&mut solution);
-    let mut rest = &right - multiply_columns(matrix, &solution);
-    for _refinement in 0..2 {
-        let mut correction = rest.clone();
-        factor.solve_columns_in_place(&mut correction);
-        let better = &solution + correction;
-        let remaining = &right - multiply_columns(matrix, &better);
-        for column in 0..right.ncols() {
-            if norm(remaining.col_as_slice(column)) < norm(rest.col_as_slice(column)) {
-                solution.col_as_slice_mut(column).copy_from_slice(better.col_as_slice(column));
-                rest.col_as_slice_mut(column).copy_from_slice(remaining.col_as_slice(column));
-            }
-        }
-    }
-    let relative = (0..right.ncols()).map(|column| {
-        let size = norm(right.col_as_slice(column));
-        if size > 0.0 { norm(rest.col_as_slice(column)) / size } else { 0.0 }
-    });
-    let residual = relative.fold(0.0, f64::max);
-    (solution, residual)
 }

@@ -1,7 +1,7 @@
 //! Dense LU and Cholesky factorisations by faer, on one thread whatever the process is set to.
 
 use crate::linear::FactorizationError;
-use crate::linear::vector::norm;
+use crate::linear::vector::{add_scaled, dot, norm};
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
@@ -73,21 +73,16 @@ impl DenseLu {
         lu::solve::solve_in_place_with_conj(factors, factors, permutation, Conj::No, b, SEQUENTIAL, stack);
     }
 
-    /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the
-    /// correction is taken if it lowers the residual.
+    /// Solves A x = b in place with one step of iterative refinement against a matrix near the one that was factored;
+    /// the correction is taken if it lowers the residual.
     pub fn solve_refined(&self, matrix: &Mat<f64>, b: &mut [f64]) {
-        let right = b.to_vec();
-        self.solve_in_place(b);
-        let rest = |x: &[f64]| -> Vec<f64> {
-            multiply(matrix, x).iter().zip(&right).map(|(product, right)| right - product).collect()
-        };
-        let mut correction = rest(b);
-        let before = norm(&correction);
-        self.solve_in_place(&mut correction);
-        let refined: Vec<f64> = b.iter().zip(&correction).map(|(x, correction)| x + correction).collect();
-        if norm(&rest(&refined)) < before {
-            b.copy_from_slice(&refined);
-        }
+        refined(b, |b| self.solve_in_place(b), |x| multiply(matrix, x));
+    }
+
+    /// As [`DenseLu::solve_refined`], for Aᵀ x = b.
+    pub fn solve_transpose_refined(&self, matrix: &Mat<f64>, b: &mut [f64]) {
+        let product = |x: &[f64]| (0..x.len()).map(|column| dot(matrix.col_as_slice(column), x)).collect();
+        refined(b, |b| self.solve_transpose_in_place(b), product);
     }
 
     /// Solves Aᵀ x = b in place.
@@ -105,6 +100,21 @@ impl DenseLu {
             SEQUENTIAL,
             stack,
         );
+    }
+}
+
+/// Solves A x = b in place, then once for the residual.
+fn refined(b: &mut [f64], solve: impl Fn(&mut [f64]), product: impl Fn(&[f64]) -> Vec<f64>) {
+    let right = b.to_vec();
+    solve(b);
+    let rest =
+        |x: &[f64]| -> Vec<f64> { product(x).iter().zip(&right).map(|(product, right)| right - product).collect() };
+    let mut correction = rest(b);
+    let before = norm(&correction);
+    solve(&mut correction);
+    let refined: Vec<f64> = b.iter().zip(&correction).map(|(x, correction)| x + correction).collect();
+    if norm(&rest(&refined)) < before {
+        b.copy_from_slice(&refined);
     }
 }
 
@@ -173,13 +183,11 @@ pub(super) fn column<E>(b: &mut [E]) -> MatMut<'_, E> {
     MatMut::from_column_major_slice_mut(b, size, 1)
 }
 
-/// y = A x for a dense column-major matrix.
+/// y = A x for a dense column-major matrix without infinite entries, whose columns at zeros of x are not read.
 pub fn multiply(matrix: &Mat<f64>, x: &[f64]) -> Vec<f64> {
     let mut y = vec![0.0; matrix.nrows()];
-    for (column, &x) in x.iter().enumerate() {
-        for (y, a) in y.iter_mut().zip(matrix.col(column).iter()) {
-            *y += a * x;
-        }
+    for (column, &x) in x.iter().enumerate().filter(|(_, x)| **x != 0.0) {
+        add_scaled(&mut y, x, matrix.col_as_slice(column));
     }
     y
 }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! cells are halved across their longest extent, again and again, until there are as many pieces as wanted;
+//! cells change sides of a cut as long as that leaves fewer faces in it (Fiduccia and Mattheyses);
 //! a piece that falls apart becomes several; a part that is too small joins the neighbour with which it shares most faces
 //! ```
 //! Total FETI needs pieces that hang together by faces: a piece that hangs on an edge has rigid motions beyond its six.
@@ -9,10 +10,17 @@
 use crate::body::mesh::Mesh;
 use crate::body::mesh::skin::connected;
 use crate::linear::ordering::longest_axis;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BinaryHeap, HashMap, HashSet};
+use std::ops::RangeInclusive;
 
 /// Share of the mean size of a piece below which a part joins a neighbour.
 const SMALL: f64 = 0.25;
+/// By which share of the cells of a cut its sides may differ from their sizes.
+const UNEQUAL: f64 = 0.03;
+/// Passes of moves across a cut.
+const PASSES: usize = 8;
+/// Moves that leave more faces in a cut than the best one before, after which a pass ends: a share of the cells.
+const PATIENCE: f64 = 0.05;
 
 impl Mesh {
     /// The piece of every cell for about so many pieces, numbered along the division: neighbours in number are
@@ -22,7 +30,11 @@ impl Mesh {
         let neighbours = self.neighbours();
         let mut pieces = Vec::new();
         let mut cells: Vec<u32> = (0..self.cell_count() as u32).collect();
-        halve(&centres, &mut cells, count.clamp(1, self.cell_count()), &mut pieces);
+        Division { centres: &centres, neighbours: &neighbours }.halve(
+            &mut cells,
+            count.clamp(1, self.cell_count()),
+            &mut pieces,
+        );
         let parts: Vec<Vec<u32>> = pieces.iter().flat_map(|piece| connected(&neighbours, piece)).collect();
         let mut piece_of = vec![0_u32; self.cell_count()];
         for (number, part) in parts.iter().enumerate() {
@@ -35,18 +47,114 @@ impl Mesh {
     }
 }
 
-/// Halves cells until every part is a piece.
-fn halve(centres: &[[f64; 3]], cells: &mut [u32], count: usize, pieces: &mut Vec<Vec<u32>>) {
-    if count <= 1 || cells.len() <= 1 {
-        pieces.push(cells.to_vec());
-        return;
+/// Cells with their centres and the cells across their faces.
+struct Division<'a> {
+    centres: &'a [[f64; 3]],
+    neighbours: &'a [Vec<u32>],
+}
+
+impl Division<'_> {
+    /// Halves cells until every part is a piece.
+    fn halve(&self, cells: &mut [u32], count: usize, pieces: &mut Vec<Vec<u32>>) {
+        if count <= 1 || cells.len() <= 1 {
+            pieces.push(cells.to_vec());
+            return;
+        }
+        let centres = self.centres;
+        let axis = longest_axis(cells.iter().map(|&cell| centres[cell as usize]));
+        let along = |cell: u32| centres[cell as usize][axis];
+        cells.sort_unstable_by(|&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+        let left = count / 2;
+        let mut cut = Cut::new(self.neighbours, cells, cells.len() * left / count);
+        cut.refine();
+        let size = cut.size(false);
+        // Stable, so that each side keeps its order.
+        cells.sort_by_key(|cell| cut.is_second[cell]);
+        let (first, second) = cells.split_at_mut(size);
+        self.halve(first, left, pieces);
+        self.halve(second, count - left, pieces);
     }
-    let axis = longest_axis(cells.iter().map(|&cell| centres[cell as usize]));
-    cells.sort_unstable_by(|&a, &b| centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b)));
-    let left = count / 2;
-    let (first, second) = cells.split_at_mut(cells.len() * left / count);
-    halve(centres, first, left, pieces);
-    halve(centres, second, count - left, pieces);
+}
+
+/// Two sides of some cells.
+struct Cut<'a> {
+    neighbours: &'a [Vec<u32>],
+    /// The side of every cell.
+    is_second: HashMap<u32, bool>,
+    /// Cells of the first side.
+    first: usize,
+    /// Fewest and most of them.
+    allowed: RangeInclusive<usize>,
+}
+
+impl<'a> Cut<'a> {
+    /// The first `first` cells on one side, the others on the other one.
+    fn new(neighbours: &'a [Vec<u32>], cells: &[u32], first: usize) -> Self {
+        let is_second = cells.iter().zip(0..).map(|(&cell, place)| (cell, place >= first)).collect();
+        let room = (UNEQUAL * first.min(cells.len() - first) as f64) as usize;
+        Self { neighbours, is_second, first, allowed: first - room..=first + room }
+    }
+
+    fn size(&self, second: bool) -> usize {
+        if second { self.is_second.len() - self.first } else { self.first }
+    }
+
+    /// Faces that leave the cut, less those that enter it, when a cell changes sides.
+    fn gain(&self, cell: u32) -> i64 {
+        let own = self.is_second[&cell];
+        let sides = self.neighbours[cell as usize].iter().filter_map(|other| self.is_second.get(other));
+        sides.map(|side| if *side == own { -1 } else { 1 }).sum()
+    }
+
+    fn change(&mut self, cell: u32) {
+        if let Some(side) = self.is_second.get_mut(&cell) {
+            *side = !*side;
+            self.first = if *side { self.first - 1 } else { self.first + 1 };
+        }
+    }
+
+    /// Passes of moves until one brings nothing.
+    fn refine(&mut self) {
+        (0..PASSES).take_while(|_| self.pass() > 0).for_each(drop);
+    }
+
+    /// One pass of moves, each cell once, in the order of their gains; returns by how many faces the cut is smaller.
+    fn pass(&mut self) -> i64 {
+        let touches = |cell: u32| {
+            let own = self.is_second[&cell];
+            self.neighbours[cell as usize]
+                .iter()
+                .any(|other| self.is_second.get(other).is_some_and(|side| *side != own))
+        };
+        let near: Vec<u32> = self.is_second.keys().copied().filter(|&cell| touches(cell)).collect();
+        let mut moves: BinaryHeap<(i64, u32)> = near.iter().map(|&cell| (self.gain(cell), cell)).collect();
+        let patience = (PATIENCE * self.is_second.len() as f64) as usize;
+        let (mut moved, mut seen) = (Vec::new(), HashSet::new());
+        let (mut sum, mut best, mut kept) = (0, 0, 0);
+        while let Some((gain, cell)) = moves.pop() {
+            if seen.contains(&cell) || self.gain(cell) != gain {
+                continue;
+            }
+            let first = if self.is_second[&cell] { self.first + 1 } else { self.first - 1 };
+            if !self.allowed.contains(&first) {
+                continue;
+            }
+            self.change(cell);
+            seen.insert(cell);
+            moved.push(cell);
+            sum += gain;
+            if sum > best {
+                (best, kept) = (sum, moved.len());
+            } else if moved.len() > kept + patience {
+                break;
+            }
+            for &other in self.neighbours[cell as usize].iter().filter(|&other| self.is_second.contains_key(other)) {
+                moves.push((self.gain(other), other));
+            }
+        }
+        moved.drain(kept..).rev().for_each(|cell| self.change(cell));
+        best
+    }
 }
 
 /// Lets parts with fewer cells than `least` join the piece with which they share most faces, smallest parts first.
