@@ -5,7 +5,7 @@ use crate::error::SceneError;
 use crate::scene::{BodyScene, BodySize, Geometry, Scene, SceneSize};
 use crate::solvers::{SolverKind, SolverPlan};
 use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
-use crate::work_estimate::factor_values;
+use crate::work_estimate::{body_factor_values, factor_values};
 
 /// Bytes of one number.
 const NUMBER: f64 = 8.0;
@@ -22,13 +22,28 @@ const INTERIOR_SHARE: f64 = 0.45;
 const SINGLE_PRECISION_SHARE: f64 = 0.5;
 /// Stored stiffness entries per dof (lower triangle of 27 neighbours).
 const STIFFNESS_PER_DOF: f64 = 41.0;
-/// Size of the factor of a whole body over the law of factors, with the fronts of its elimination.
-const CONDENSED_SHARE: f64 = 0.95;
+/// Values that the factor of a whole body takes, with the fronts of its elimination, over those of the factor alone.
+const CONDENSED_SHARE: f64 = 1.15;
+/// Numbers per dof of a whole body beside its factor: matrix, patterns, places of entries, mesh.
+const CONDENSED_PER_DOF: f64 = 500.0;
 /// Share of the available memory that may be used.
 const USABLE: f64 = 0.9;
 
-/// Estimated bytes for a scene, with `columns` of the Jacobian of its forces (0: states and adjoints only), on that of
-/// so many `processes` which owns most subdomains. The kind `auto` counts as total FETI: it condenses what takes little
+/// Estimated bytes of one state: what the states of all load cases share, and what each of them takes.
+pub(crate) struct Estimate {
+    shared: f64,
+    own: f64,
+}
+
+impl Estimate {
+    /// The bytes of the states of so many load cases.
+    pub(crate) fn of_cases(&self, cases: usize) -> f64 {
+        self.shared + cases as f64 * self.own
+    }
+}
+
+/// The estimate for a scene, with `columns` of the Jacobian of its forces (0: states and adjoints only), on that of so
+/// many `processes` which owns most subdomains. The kind `auto` counts as total FETI: it condenses what takes little
 /// memory only.
 pub(crate) fn estimate(
     scene: &Scene,
@@ -36,16 +51,17 @@ pub(crate) fn estimate(
     preconditioner: PreconditionerKind,
     columns: usize,
     processes: usize,
-) -> f64 {
+) -> Estimate {
     let size = SceneSize::of(scene);
     let contact = 3.0 * size.contact_nodes;
     if kind == SolverKind::Direct {
-        // Factor with the fronts of its elimination, compliances, the Newton matrix and its LU.
+        // Factors with the fronts of their elimination, compliances; the Newton matrix and its LU of every case.
         let of_body = |body: &BodySize| {
             let (dofs, own) = (3.0 * body.nodes, 3.0 * body.contact_nodes);
-            CONDENSED_SHARE * factor_values(dofs) + STIFFNESS_PER_DOF * dofs + 2.0 * own * own
+            CONDENSED_SHARE * body_factor_values(body) + CONDENSED_PER_DOF * dofs + 2.0 * own * own
         };
-        return NUMBER * (size.sum(of_body) + 3.0 * contact * contact);
+        let shared = NUMBER * (size.sum(of_body) + contact * contact);
+        return Estimate { shared, own: NUMBER * 2.0 * contact * contact };
     }
     let pieces = size.sum(|body| body.pieces);
     let interior = if preconditioner == PreconditionerKind::Dirichlet { INTERIOR_SHARE } else { 0.0 };
@@ -70,12 +86,12 @@ pub(crate) fn estimate(
     let owned = (pieces / processes as f64).ceil();
     let rows = glued * owned / pieces + contact;
     let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * owned * torn_dofs / pieces);
-    NUMBER * (owned * per_piece + DUAL_VECTORS * rows + coarse) + tangents
+    Estimate { shared: NUMBER * owned * per_piece, own: NUMBER * (DUAL_VECTORS * rows + coarse) + tangents }
 }
 
 /// Memory that a plan needs in one process for all its load cases, bytes, roughly.
 pub fn needed(plan: &SolverPlan) -> f64 {
-    plan.cases as f64 * estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), 1)
+    estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), 1).of_cases(plan.cases)
 }
 
 /// Refuses a scene that needs more memory than the machine has to give. Where the system does not
@@ -86,7 +102,7 @@ pub fn needed(plan: &SolverPlan) -> f64 {
 pub fn check(plan: &SolverPlan, communication: &dyn Communication) -> Result<(), SceneError> {
     let processes = communication.size();
     let one = estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), processes);
-    let needed = plan.cases as f64 * one;
+    let needed = one.of_cases(plan.cases);
     if processes == 1 {
         return compare(&plan.scene, needed, available());
     }
@@ -163,7 +179,7 @@ mod tests {
             (35, 5, SolverKind::Direct, 0, 2.33e9),
         ] {
             let scene = signorini().expect("a preset").with_bricks([mesh; 3], [subdomains; 3]);
-            let needed = estimate(&scene, kind, PreconditionerKind::Dirichlet, columns, 1);
+            let needed = estimate(&scene, kind, PreconditionerKind::Dirichlet, columns, 1).of_cases(1);
             assert!(
                 (needed / measured - 1.0).abs() < 0.15,
                 "{mesh}/{subdomains}: {needed:.2e}, measured {measured:.2e}"
@@ -176,18 +192,19 @@ mod tests {
         // Measured at 24 bricks and 4 subdomains per edge: 236 MB on one process, 86 MB on each of four, of which some
         // 30 MB are those of a process without a scene.
         let scene = signorini().expect("a preset").with_bricks([24; 3], [4; 3]);
-        let needed = |processes| estimate(&scene, SolverKind::Newton, PreconditionerKind::Dirichlet, 0, processes);
+        let estimate =
+            |kind, processes| estimate(&scene, kind, PreconditionerKind::Dirichlet, 0, processes).of_cases(1);
+        let needed = |processes| estimate(SolverKind::Newton, processes);
         let shares = [2, 4, 64].map(|processes| needed(processes) / needed(1));
         assert!(0.2 < shares[1] && shares[1] < 0.4 && shares[0] < 1.0 && shares[2] < shares[1], "{shares:?}");
-        let condensed =
-            [1, 4].map(|processes| estimate(&scene, SolverKind::Direct, PreconditionerKind::Dirichlet, 0, processes));
+        let condensed = [1, 4].map(|processes| estimate(SolverKind::Direct, processes));
         assert_eq!(condensed[0], condensed[1]);
     }
 
     #[test]
     fn a_scene_beyond_any_machine_is_refused_with_the_figures() {
         let scene = signorini().expect("a preset").with_bricks([400; 3], [1; 3]);
-        let needed = estimate(&scene, SolverKind::Direct, PreconditionerKind::Dirichlet, 0, 1);
+        let needed = estimate(&scene, SolverKind::Direct, PreconditionerKind::Dirichlet, 0, 1).of_cases(1);
         let text = compare(&scene, needed, Some(1e12)).expect_err("needs more than a terabyte").to_string();
         assert!(text.contains("400x400x400 bricks") && text.contains("1000.0 GB of memory"), "{text}");
         assert_eq!(compare(&scene, needed, None).ok(), Some(()), "what is not known refuses nothing");

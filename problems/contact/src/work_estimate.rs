@@ -1,11 +1,13 @@
 //! Floating-point operations of the contact solvers, estimated from sizes alone: what decides between them.
 //!
 //! ```text
-//! sparse factor of n dofs of a box in nested dissection:   values v ≈ 268 000·(n/1536)^1.48,   2 v²/n operations, 4 v per solve
-//! dense matrix of n rows:                                  ⅔ n³ operations per factor, 2 n³ per inverse
+//! piece of n dofs of a box:   values v ≈ 268 000·(n/1536)^1.48,   2 v²/n operations, 4 v per solve
+//! whole body:                 v ≈ φ k^−0.48·268 000·(n/1536)^1.48,  5.3 v²/n operations with the rows of the contact
+//! dense matrix of n rows:     ⅔ n³ operations per factor, 8/3 n³ for two inverses
 //! ```
-//! The law of v was measured from 7³ to 10³ nodes. The decision must not depend on time or load, so that a run can be
-//! repeated.
+//! k: cubes side by side that the body is as large and as thick as; φ = 0.65 for bricks, 1.25 for tetrahedra of second
+//! order. The laws were measured from 7³ to 10³ nodes, and on parts of 20 000 to 200 000 displacements. The decision
+//! must not depend on time or load, so that a run can be repeated.
 
 use crate::body::elasticity::Material;
 use crate::body::mesh::CellKind;
@@ -16,10 +18,13 @@ use crate::solvers::SolverKind;
 /// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of
 /// direct condensation may cost as many operations.
 pub(crate) const MAX_PRODUCTS: usize = 20_000;
-/// Fill of a factor with the contact rows as its border, relative to one without.
-const BORDERED: f64 = 1.3;
-/// Newton steps on condensed bodies with all nodes closed that a state is expected to cost.
-const EXPECTED_STEPS: f64 = 5.0;
+/// Values of the factor of a whole body over the law of pieces, of bricks and of tetrahedra of second order.
+const FILL: [f64; 2] = [0.65, 1.25];
+/// Operations of the factor of a whole body with the contact rows as its border, over v²/n.
+const BORDERED: f64 = 5.3;
+/// Newton steps on condensed bodies with all nodes closed that a state is expected to cost: few nodes are, and of the
+/// rows of those that slide two thirds are factored.
+const EXPECTED_STEPS: f64 = 1.5;
 /// Newton steps on condensed bodies that are always allowed: nine tenths of the states need fewer.
 const MIN_STEPS: usize = 60;
 /// Operations per second of sparse and dense factorisations on two cores: large dense blocks.
@@ -40,6 +45,11 @@ pub(crate) fn factor_values(dofs: f64) -> f64 {
     268_000.0 * (dofs / 1536.0).powf(1.48)
 }
 
+/// Values of the Cholesky factor of a whole body.
+pub(crate) fn body_factor_values(body: &BodySize) -> f64 {
+    FILL[usize::from(body.is_second_order)] * body.cubes.powf(-0.48) * factor_values(3.0 * body.nodes)
+}
+
 /// Estimated operations of the parts of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorkEstimate {
@@ -47,7 +57,7 @@ pub struct WorkEstimate {
     pub torn_factorization: f64,
     /// One product with the dual operator F.
     pub product: f64,
-    /// Condensation of all bodies and their compliances; dense inverses as those of bricks are at worst.
+    /// Condensation of all bodies and their compliances.
     pub condensation: f64,
     /// One Newton step on condensed bodies with all nodes closed.
     pub condensed_step: f64,
@@ -59,12 +69,16 @@ impl WorkEstimate {
         let size = SceneSize::of(scene);
         let factorization = |values: f64, dofs: f64| 2.0 * values * values / dofs;
         let rows = size.contact_nodes * if scene.has_friction() { 3.0 } else { 1.0 };
-        let whole = |dofs: f64| factorization(BORDERED * factor_values(dofs), dofs);
+        // Bricks stand on a foundation, which two dense inverses take off again.
+        let inverses = |body: &BodySize| {
+            if body.is_second_order { 0.0 } else { 8.0 / 3.0 * (3.0 * body.contact_nodes).powi(3) }
+        };
+        let whole = |body: &BodySize| BORDERED * body_factor_values(body).powi(2) / (3.0 * body.nodes) + inverses(body);
         let piece = |body: &BodySize| 3.0 * body.piece_nodes;
         Self {
             torn_factorization: size.sum(|body| body.pieces * factorization(factor_values(piece(body)), piece(body))),
             product: size.sum(|body| body.pieces * 4.0 * factor_values(piece(body))),
-            condensation: size.sum(|body| whole(3.0 * body.nodes) + 8.0 / 3.0 * (3.0 * body.contact_nodes).powi(3)),
+            condensation: size.sum(whole),
             condensed_step: 2.0 / 3.0 * rows.powi(3),
         }
     }

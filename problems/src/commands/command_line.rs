@@ -6,7 +6,6 @@ use crate::commands::file_limit::let_large_writes_fail;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
-use crate::commands::numbers::number;
 use crate::commands::output::{finish, left, notice};
 use crate::commands::scene_options::help_with_defaults;
 use crate::commands::{compare, evaluate, export, field_list, look, new_scene, optimize, recheck, study, verify};
@@ -166,8 +165,7 @@ fn tell_of_files(loaded: &LoadedScene) {
     notes.iter().for_each(|note| notice(note));
     if !notes.is_empty() {
         let needed = loaded.case.plans(Wanted::States).map(|plan| memory::needed(&plan)).fold(0.0, f64::max);
-        let megabytes = needed / 1e6;
-        notice(&format!("a state takes about {} MB of memory", number(megabytes.ceil())));
+        notice(&format!("an evaluation takes about {:.0} MB of memory", needed / 1e6));
     }
 }
 

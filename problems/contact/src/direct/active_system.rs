@@ -359,3 +359,54 @@ fn refined(factor: &DenseLu, matrix: &Mat<f64>, right: Mat<f64>) -> (Mat<f64>, f
     let residual = relative.fold(0.0, f64::max);
     (solution, residual)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::direct::DirectSolver;
+    use crate::equilibrium::{ContactPoint, ContactProblem};
+    use crate::scene::hertz;
+    use std::sync::Arc;
+
+    /// Nodes that are open, stick and slide in turn, and a right side without structure.
+    fn case(contact: &CompliantContact) -> (Vec<Linearization>, Vec<f64>) {
+        let points = contact.problem.boundary.points.iter();
+        let of_node = |(number, point): (usize, &ContactPoint)| {
+            let angle = 0.7 * number as f64;
+            let direction = if point.row_count() == 3 { [angle.cos(), angle.sin()] } else { [-1.0, 0.0] };
+            let can_slide = if point.row_count() > 1 { number % 3 } else { number % 2 };
+            [Linearization::Open, Linearization::Stick, Linearization::Slip { direction, ratio: 0.3 }][can_slide]
+        };
+        let linearizations: Vec<Linearization> = points.clone().enumerate().map(of_node).collect();
+        let points = points.zip(&linearizations);
+        let closed = points.filter(|(_, linearization)| **linearization != Linearization::Open);
+        let count = closed.map(|(point, _)| point.row_count()).sum::<usize>() + contact.resultant.len();
+        (linearizations, (0..count).map(|row| (1.3 * row as f64).sin()).collect())
+    }
+
+    #[test]
+    fn what_is_eliminated_is_what_all_rows_give() {
+        let scene = hertz().expect("the example").with_bricks([5; 3], [1; 3]);
+        let controls = scene.start();
+        let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).expect("a scene"))).expect("a pattern");
+        let contact = solver.contact(&controls).expect("bodies");
+        let (linearizations, right) = case(&contact);
+        for delta in [0.0, 0.5] {
+            let system =
+                |kept| ActiveSystem::new(&contact, &linearizations, delta, Friction::Coulomb, kept).with_springs(1e-3);
+            let [all, coupled] = [Kept::All, Kept::Coupled].map(|kept| ActiveFactor::new(system(kept), None));
+            assert!(coupled.system.kept < all.system.kept);
+            let columns = Mat::from_fn(right.len(), 2, |row, column| right[row] * (column + 1) as f64);
+            let several = [&all, &coupled].map(|factor| factor.solve_columns(&contact, &columns).0);
+            let pairs = [
+                [&all, &coupled].map(|factor| factor.solve(&contact, right.clone())),
+                [&all, &coupled].map(|factor| factor.solve_transposed(&contact, &right)),
+                several.map(|solution| solution.col_as_slice(1).to_vec()),
+            ];
+            for [all, coupled] in pairs {
+                let difference: Vec<f64> = all.iter().zip(&coupled).map(|(a, b)| a - b).collect();
+                assert!(norm(&difference) < 1e-11 * norm(&all), "{:.1e}", norm(&difference) / norm(&all));
+            }
+        }
+    }
+}

@@ -57,7 +57,7 @@ pub struct BodyLoad {
 }
 
 /// B of a body by rows: entries (contact dof, value); rows that it does not take part in are empty.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct BodyRows(Vec<Vec<(usize, f64)>>);
 
 /// A body of a shape with its share in the jumps.
@@ -65,7 +65,7 @@ pub struct BodyRows(Vec<Vec<(usize, f64)>>);
 pub struct ContactBody {
     pub(super) body: Arc<Factored<CompliantBody>>,
     pub(super) load: Arc<BodyLoad>,
-    pub(super) rows: BodyRows,
+    pub(super) rows: Arc<BodyRows>,
 }
 
 impl CompliantBody {

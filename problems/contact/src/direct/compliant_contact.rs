@@ -28,8 +28,8 @@ const UNTOUCHED: f64 = 1e-10;
 pub struct CompliantContact {
     /// The discrete problem: contact nodes, friction, layout of the packed rows.
     pub problem: Arc<ContactProblem>,
-    /// C, symmetric, rows × rows.
-    pub compliance: Mat<f64>,
+    /// C, symmetric, rows × rows; shared by load cases.
+    pub compliance: Arc<Mat<f64>>,
     /// R: jumps of the rigid motions, rows × motions, with orthonormal columns.
     pub motions: Mat<f64>,
     /// e: what contact must carry along the motions.
@@ -59,23 +59,19 @@ pub(super) struct Placement {
 }
 
 impl CompliantContact {
-    /// The problem of some bodies with given contact rows; units: of forces, the load, N; of compliances, mm/N.
+    /// The problem of some bodies with given contact rows and their compliance in its unit; units: of forces, the load,
+    /// N; of compliances, mm/N.
     pub fn new(
         problem: Arc<ContactProblem>,
         bodies: Vec<ContactBody>,
-        rows: Arc<ContactRows>,
+        (rows, compliance): (Arc<ContactRows>, Arc<Mat<f64>>),
         [load, unit]: [f64; 2],
     ) -> Self {
         let boundary = &problem.boundary;
         let count = boundary.row_count;
-        let mut compliance = Mat::<f64>::zeros(count, count);
         let mut constant = rows.prescribed_approaches(boundary, &problem.bodies);
-        for ContactBody { body, load, rows } in &bodies {
-            rows.add_compliance(body.factors.compliance(), &mut compliance);
+        for ContactBody { load, rows, .. } in &bodies {
             rows.add_jumps(&load.free, 1.0, &mut constant);
-        }
-        for column in 0..count {
-            compliance.col_as_slice_mut(column).iter_mut().for_each(|c| *c /= unit);
         }
         constant.iter_mut().for_each(|d| *d /= unit * load);
         let [motions, basis, inverse_basis] = touched_motions(&bodies, count);

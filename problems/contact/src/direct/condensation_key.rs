@@ -7,9 +7,6 @@ use crate::error::ContactError;
 use crate::shelf::Shelf;
 use std::sync::Arc;
 
-/// Condensed bodies that solvers share.
-pub type CondensedShelf = Shelf<CondensationKey, CompliantBody>;
-
 /// Mesh, materials, trace, contact nodes and held directions of a body: its stiffness, condensed. Neither loads nor
 /// prescribed displacements are part of it.
 #[derive(Debug)]
@@ -28,7 +25,7 @@ impl CondensationKey {
     pub(super) fn of(
         (bodies, number): (&Arc<[Body]>, usize),
         contact: &[u32],
-        shelf: &CondensedShelf,
+        shelf: &Shelf<Self, CompliantBody>,
     ) -> Result<Arc<Self>, ContactError> {
         let body = &bodies[number];
         let is_same = |key: &Self| {

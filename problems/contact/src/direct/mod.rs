@@ -11,6 +11,7 @@ mod compliant_body;
 mod compliant_contact;
 mod condensation;
 mod condensation_key;
+mod condensed_shelf;
 mod cone_programs;
 mod continuation;
 mod diagnosis;
@@ -28,7 +29,7 @@ mod solver;
 mod tangents;
 
 pub use compliant_contact::CompliantContact;
-pub use condensation_key::CondensedShelf;
+pub use condensed_shelf::CondensedShelf;
 pub use cone_programs::by_cone_programs;
 #[cfg(feature = "interior-point")]
 pub use resistance::resistance;

@@ -4,7 +4,8 @@ use crate::direct::active_system::{ActiveFactor, ActiveSystem, Kept};
 use crate::direct::compliant_body::{BodyLoad, BodyRows, CompliantBody, ContactBody, contact_stiffness};
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::CondensationPattern;
-use crate::direct::condensation_key::{CondensationKey, CondensedShelf};
+use crate::direct::condensation_key::CondensationKey;
+use crate::direct::condensed_shelf::CondensedShelf;
 use crate::direct::continuation::Reached;
 use crate::direct::continuation::equilibrium;
 use crate::direct::forces::{CondensedSolution, forces};
@@ -37,6 +38,8 @@ pub struct DirectSolver {
     /// What the factors of the bodies depend on beside positions.
     keys: Vec<Arc<CondensationKey>>,
     shelf: Arc<CondensedShelf>,
+    /// Newton steps that a state may take.
+    max_steps: usize,
     /// The bodies of fixed shape, by number.
     fixed: OnceLock<Vec<(usize, CondensedPart)>>,
 }
@@ -76,11 +79,12 @@ impl DirectSolver {
             let sides = problem.boundary.points.iter().flat_map(|point| &point.sides);
             let contact: BTreeSet<u32> = sides.filter(|side| side.body == number).map(|side| side.node).collect();
             let contact: Vec<u32> = contact.into_iter().collect();
-            CondensationKey::of((&problem.bodies, number), &contact, &shelf)
+            CondensationKey::of((&problem.bodies, number), &contact, &shelf.bodies)
         };
         let keys = (0..problem.bodies.len()).map(key).collect::<Result<Vec<_>, ContactError>>()?;
         let patterns = keys.iter().map(|key| Arc::clone(key.pattern())).collect();
-        Ok(Self { problem, patterns, keys, shelf, fixed: OnceLock::new() })
+        let max_steps = WorkEstimate::of(&problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
+        Ok(Self { problem, patterns, keys, shelf, max_steps, fixed: OnceLock::new() })
     }
 
     /// The contact problem in the forces of given controls: the data of the state, for other methods.
@@ -99,14 +103,14 @@ impl DirectSolver {
     ) -> Result<(CondensedPart, bool), ContactError> {
         let (body, key) = (&self.problem.bodies[number], &self.keys[number]);
         let (positions, rigid) = (&configuration.positions[number], &configuration.rigid);
-        let known = self.shelf.find(key, positions);
+        let known = self.shelf.bodies.find(key, positions);
         let is_new = known.is_none();
         let factored = match known {
             Some(known) => known,
             None => {
                 let factors = CompliantBody::new(&self.patterns[number], (body, rigid), number, positions)?;
                 let factored = Arc::new(Factored { positions: Arc::clone(positions), factors });
-                self.shelf.put(key, &factored);
+                self.shelf.bodies.put(key, &factored);
                 factored
             }
         };
@@ -140,14 +144,15 @@ impl DirectSolver {
         let boundary = &self.problem.boundary;
         let with_rows = |(number, (body, load)): (usize, CondensedPart)| {
             let rows = BodyRows::new(number, &body.factors.condensed, boundary, &configuration.rows);
-            ContactBody { body, load, rows }
+            ContactBody { body, load, rows: Arc::new(rows) }
         };
         let bodies: Vec<ContactBody> = bodies.map(with_rows).collect();
         let stiffness = contact_stiffness(&self.problem, &bodies);
         let unit = configuration.unit(stiffness);
         let units = [if unit.first() > 0.0 { unit.first() } else { 1.0 }, stiffness.recip()];
         let rows = Arc::clone(&configuration.rows);
-        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, rows, units);
+        let compliance = self.shelf.compliance(&bodies, boundary.row_count, units[1]);
+        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, (rows, compliance), units);
         Ok((contact, unit, factorizations))
     }
 
@@ -162,7 +167,7 @@ impl DirectSolver {
         Stage::Contact.enter()?;
         let (solution, work, programs) = if unit.first() > 0.0 {
             // Why there is no state is asked only where none was found.
-            let found = Self::equilibrium(&mut contact, unit, start, tolerance);
+            let found = Self::equilibrium(&mut contact, unit, start, (tolerance, self.max_steps));
             found.map_err(|error| match error {
                 // Where rounding hides the state, it hides a proof as well.
                 ContactError::BeyondPrecision { .. } | ContactError::Interrupted => error,
@@ -197,10 +202,9 @@ impl DirectSolver {
         contact: &mut CompliantContact,
         unit: ForceUnit,
         start: Option<&[f64]>,
-        tolerance: f64,
+        (tolerance, max_steps): (f64, usize),
     ) -> Result<(CondensedSolution, Work, usize), ContactError> {
         let start = start.and_then(|start| contact.unknowns_near(start));
-        let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let mut reached = equilibrium(contact, start.as_deref(), tolerance, max_steps);
         if reached.solved {
             reached.refine(contact, unit, tolerance);

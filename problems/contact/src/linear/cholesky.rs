@@ -6,6 +6,7 @@ use crate::linear::dense::column;
 use crate::linear::entry::{Entry, Row};
 use crate::linear::fronts::{Fronts, NoPostorder};
 use crate::linear::multifrontal::Elimination;
+use crate::linear::parallel;
 use crate::linear::real::Real;
 use crate::linear::supernodal;
 use crate::linear::symmetric::LowerPattern;
@@ -22,6 +23,9 @@ use faer::sparse::linalg::cholesky::{
 use faer::traits::ComplexField;
 use faer::{Conj, Mat, MatMut, Par, Side};
 use std::sync::{Arc, OnceLock};
+
+/// Right sides that are solved for at once.
+const COLUMNS: usize = 16;
 
 /// Elimination order and fill of one pattern.
 #[derive(Debug)]
@@ -100,8 +104,15 @@ impl SymbolicFactor {
         Ok((NumericFactor { symbolic: Arc::clone(self), values, single: OnceLock::new() }, border))
     }
 
-    /// Solves L Lᵀ x = b in place for the values of a factor, in either precision; columns of b are right sides.
-    fn solve<E: ComplexField>(&self, values: &[E], b: MatMut<'_, E>) {
+    /// Solves L Lᵀ x = b in place for the values of a factor, in either precision; columns of b are right sides, of
+    /// which some at once need little memory beside them.
+    fn solve<E: ComplexField + Send + Sync>(&self, values: &[E], b: MatMut<'_, E>) {
+        let columns = b.ncols();
+        if columns > COLUMNS {
+            let (first, others) = b.split_at_col_mut(columns.div_ceil(COLUMNS) / 2 * COLUMNS);
+            parallel::join(true, || self.solve(values, first), || self.solve(values, others));
+            return;
+        }
         let symbolic = self.fronts.analysis();
         let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<E>(b.ncols(), Par::Seq));
         let stack = MemStack::new(&mut memory);
@@ -257,6 +268,7 @@ fn failure(what: &'static str, reason: String) -> FactorizationError {
 mod tests {
     use super::*;
     use crate::linear::ordering::nested_dissection;
+    use crate::linear::parallel;
     use testset::kit::Random;
 
     /// Rows by entries (index, value).

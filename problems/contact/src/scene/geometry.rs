@@ -48,10 +48,13 @@ const CELLS_PER_PIECE: [usize; 2] = [512, 400];
 impl MeshGeometry {
     /// Pieces, about.
     pub fn piece_count(&self) -> usize {
-        let mesh = &self.mesh;
-        let second = mesh.cells().filter(|cell| cell.nodes.len() > 8).count();
-        let cells = if 2 * second > mesh.cell_count() { CELLS_PER_PIECE[1] } else { CELLS_PER_PIECE[0] };
-        self.pieces.unwrap_or_else(|| mesh.cell_count().div_ceil(cells))
+        let cells = if self.is_second_order() { CELLS_PER_PIECE[1] } else { CELLS_PER_PIECE[0] };
+        self.pieces.unwrap_or_else(|| self.mesh.cell_count().div_ceil(cells))
+    }
+
+    /// Whether most cells are of second order.
+    pub(crate) fn is_second_order(&self) -> bool {
+        2 * self.mesh.cells().filter(|cell| cell.nodes.len() > 8).count() > self.mesh.cell_count()
     }
 }
 

@@ -11,6 +11,10 @@ pub struct BodySize {
     pub nodes: f64,
     /// Cells of the body.
     pub cells: f64,
+    /// Whether most of them are of second order.
+    pub is_second_order: bool,
+    /// Cubes of as many nodes per edge as the body is thick, side by side, that have its nodes; at least 1.
+    pub cubes: f64,
     /// Pieces of the body.
     pub pieces: f64,
     /// Nodes of a piece.
@@ -64,6 +68,8 @@ impl BodySize {
                 Self {
                     nodes: nodes(cells),
                     cells: cells.iter().product(),
+                    is_second_order: false,
+                    cubes: cubes(nodes(cells), nodes(cells) - cells.iter().map(|cells| cells - 1.0).product::<f64>()),
                     pieces: block.subdomains.iter().product::<usize>() as f64,
                     piece_nodes: nodes(of_piece),
                     contact_nodes,
@@ -78,6 +84,8 @@ impl BodySize {
                 Self {
                     nodes,
                     cells: mesh.cell_count() as f64,
+                    is_second_order: geometry.is_second_order(),
+                    cubes: cubes(nodes, skin_nodes(mesh)),
                     pieces,
                     piece_nodes,
                     contact_nodes,
@@ -86,6 +94,18 @@ impl BodySize {
             }
         }
     }
+}
+
+/// Cubes of as many nodes as a body, as thick as it is: its thickness is that of a cube of equal share of skin.
+fn cubes(nodes: f64, skin_nodes: f64) -> f64 {
+    let thickness = 6.0 * nodes / skin_nodes;
+    (nodes / thickness.powi(3)).max(1.0)
+}
+
+/// Nodes on the skin of a mesh.
+fn skin_nodes(mesh: &Mesh) -> f64 {
+    let nodes: BTreeSet<u32> = mesh.skin().into_iter().flat_map(|face| mesh.face_nodes(face)).collect();
+    nodes.len() as f64
 }
 
 /// Nodes on some faces of a body.

@@ -62,7 +62,7 @@ impl Order {
     /// The order of `auto`.
     fn chosen(problem: &ContactProblem, options: &TornOptions, wanted: Wanted) -> Self {
         let scene = &problem.scene;
-        if memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1) > MAX_CONDENSED_BYTES {
+        if memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1).of_cases(1) > MAX_CONDENSED_BYTES {
             return Self::Torn(DualMethod::default());
         }
         let estimate = WorkEstimate::of(scene);
