@@ -21,7 +21,7 @@ use crate::linear::vector::add_scaled;
 use faer::Mat;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Sizes of the rows of the motions that differ by rounding.
 const EQUAL_SIZES: f64 = 1e-9;
@@ -51,7 +51,10 @@ pub struct CondensedBody {
     pub(super) foundation: Option<f64>,
     /// B by rows: dof of the body, value.
     rows: Vec<Vec<(usize, f64)>>,
-    factor: NumericFactor,
+    /// The factor of K̂; none after it has been given back.
+    factor: Mutex<Option<Arc<NumericFactor>>>,
+    /// K̂.
+    matrix: Vec<f64>,
     /// The stiffness of every contact node, N/mm: where the others stand on the foundation, else the diagonal of K.
     pub(super) local: Vec<[[f64; 3]; 3]>,
 }
@@ -95,7 +98,8 @@ impl CondensationPattern {
         let rows = self.rows(body, &weights);
         let (factor, compliance) = self.symbolic.factorize_bordered(&values, &rows)?;
         let local = foundation.map_or(diagonal, |foundation| on_foundation(&compliance, foundation));
-        Ok(CondensedBody { pattern: Arc::clone(self), weights, compliance, foundation, rows, factor, local })
+        let (pattern, factor) = (Arc::clone(self), Mutex::new(Some(Arc::new(factor))));
+        Ok(CondensedBody { pattern, weights, compliance, foundation, rows, factor, matrix: values, local })
     }
 
     /// The place of a node of the mesh among the nodes in contact rows.
@@ -267,6 +271,22 @@ impl CondensedBody {
 
     /// K̂⁻¹ f in place, for forces on the whole body, 0 at held dofs, one column per load.
     pub(super) fn solve(&self, forces: &mut Mat<f64>) {
-        self.factor.solve_columns_in_place(forces);
+        self.factor().solve_columns_in_place(forces);
+    }
+
+    /// The factor of K̂, computed again after it has been given back.
+    fn factor(&self) -> Arc<NumericFactor> {
+        let mut factor = self.factor.lock().unwrap_or_else(PoisonError::into_inner);
+        let again = || {
+            let found = self.pattern.symbolic.factorize_bordered(&self.matrix, &self.rows);
+            Arc::new(found.expect("invariant: the matrix has been factored before").0)
+        };
+        Arc::clone(factor.get_or_insert_with(again))
+    }
+
+    /// Gives the factor of K̂ back where it has more than so many values.
+    pub(super) fn give_back(&self, most: usize) {
+        let mut factor = self.factor.lock().unwrap_or_else(PoisonError::into_inner);
+        factor.take_if(|factor| factor.value_count() > most);
     }
 }

@@ -28,6 +28,21 @@ mod tests {
     use crate::scene::hertz;
     use std::sync::Arc;
 
+    #[test]
+    fn a_factor_that_was_given_back_is_computed_again_to_the_bit() {
+        let scene = hertz().expect("the example").with_bricks([3; 3], [1; 3]);
+        let controls = scene.start();
+        let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).expect("a scene"))).expect("a pattern");
+        let found = [false, true].map(|gives_back| {
+            let state = solver.solve(&controls, None, 1e-10).expect("a state").solution;
+            if gives_back {
+                state.contact.bodies.iter().for_each(|body| body.stiff().condensed.give_back(0));
+            }
+            solver.bodies(&state).expect("bodies")
+        });
+        assert_eq!(found[0], found[1]);
+    }
+
     /// A function of the displacements needs them for its value, its adjoint and the estimate of its error.
     #[test]
     fn a_state_solves_for_its_displacements_once() {

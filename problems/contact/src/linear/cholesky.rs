@@ -177,6 +177,11 @@ impl SymbolicFactor {
 }
 
 impl NumericFactor {
+    /// Number of values of L.
+    pub(crate) fn value_count(&self) -> usize {
+        self.values.len()
+    }
+
     /// Solves A x = b in place.
     pub fn solve_in_place(&self, b: &mut [f64]) {
         self.symbolic.solve(&self.values, column(b));
@@ -268,7 +273,6 @@ fn failure(what: &'static str, reason: String) -> FactorizationError {
 mod tests {
     use super::*;
     use crate::linear::ordering::nested_dissection;
-    use crate::linear::parallel;
     use testset::kit::Random;
 
     /// Rows by entries (index, value).
