@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! piece of n dofs of a box:   values v ≈ 268 000·(n/1536)^1.48,   2 v²/n operations, 4 v per solve
-//! whole body:                 v ≈ φ k^−0.48·268 000·(n/1536)^1.48,  5.3 v²/n operations with the rows of the contact
+//! whole body:                 v ≈ φ k^−0.48·268 000·(n/1536)^1.48,  2.8 v²/n operations,  18 m² t² more for m contact rows
 //! dense matrix of n rows:     ⅔ n³ operations per factor, 8/3 n³ for two inverses
 //! ```
-//! k: cubes side by side that the body is as large and as thick as; φ = 0.65 for bricks, 1.25 for tetrahedra of second
-//! order. The laws were measured from 7³ to 10³ nodes, and on parts of 20 000 to 200 000 displacements. The decision
-//! must not depend on time or load, so that a run can be repeated.
+//! k: cubes side by side that the body is as large and as thick as; t: nodes along their edges; φ = 0.65 for bricks,
+//! 1.25 for tetrahedra of second order. The laws were measured from 7³ to 10³ nodes, and on parts of 20 000 to 200 000
+//! displacements. The decision must not depend on time or load, so that a run can be repeated.
 
 use crate::body::elasticity::Material;
 use crate::body::mesh::CellKind;
@@ -20,23 +20,32 @@ use crate::solvers::SolverKind;
 pub(crate) const MAX_PRODUCTS: usize = 20_000;
 /// Values of the factor of a whole body over the law of pieces, of bricks and of tetrahedra of second order.
 const FILL: [f64; 2] = [0.65, 1.25];
-/// Operations of the factor of a whole body with the contact rows as its border, over v²/n.
-const BORDERED: f64 = 5.3;
+/// Operations of the factor of a whole body, over v²/n.
+const WHOLE: f64 = 2.8;
+/// Operations of m contact rows as its border, over m² times the 3 t² rows of a separator.
+const BORDER: f64 = 6.0;
+/// Operations of total FETI over those of direct condensation up to which it may go on: what it finds has residuals
+/// that know of all rounding.
+const PATIENCE: f64 = 1.6;
 /// Newton steps on condensed bodies with all nodes closed that a state is expected to cost: few nodes are, and of the
 /// rows of those that slide two thirds are factored.
 const EXPECTED_STEPS: f64 = 1.5;
 /// Newton steps on condensed bodies that are always allowed: nine tenths of the states need fewer.
 const MIN_STEPS: usize = 60;
-/// Operations per second of sparse and dense factorisations on two cores: large dense blocks.
+/// Operations per second on two cores: of large dense blocks, of the factors of pieces, of solves, which wait for
+/// memory, and of solves for many right sides at once.
 const FACTORING: f64 = 3.0e10;
-/// Operations per second of total FETI: small factors, and solves, which wait for memory.
-const SOLVING: f64 = 4.5e9;
+const TORN_FACTORING: f64 = 1.5e10;
+const SOLVING: f64 = 2.0e9;
+const SOLVING_COLUMNS: f64 = 7.0e9;
 /// Products with F of a state with its adjoint, for cubes of bricks in one body.
 const EXPECTED_PRODUCTS: f64 = 60.0;
+/// Share of them that a column of a Jacobian takes.
+const COLUMN_SHARE: f64 = 0.45;
 /// Its factors for pieces of meshes, whose boundaries are rough, for tetrahedra, for pairs of bodies, and for nearly
 /// incompressible material.
 const ROUGH: f64 = 1.7;
-const TETRAHEDRA: f64 = 4.0;
+const TETRAHEDRA: f64 = 1.2;
 const PAIRS: f64 = 1.5;
 const INCOMPRESSIBLE: f64 = 4.0;
 
@@ -61,6 +70,8 @@ pub struct WorkEstimate {
     pub condensation: f64,
     /// One Newton step on condensed bodies with all nodes closed.
     pub condensed_step: f64,
+    /// One solution with the factors of all bodies.
+    pub solution: f64,
 }
 
 impl WorkEstimate {
@@ -73,25 +84,36 @@ impl WorkEstimate {
         let inverses = |body: &BodySize| {
             if body.is_second_order { 0.0 } else { 8.0 / 3.0 * (3.0 * body.contact_nodes).powi(3) }
         };
-        let whole = |body: &BodySize| BORDERED * body_factor_values(body).powi(2) / (3.0 * body.nodes) + inverses(body);
+        let border = |body: &BodySize| {
+            let (rows, thickness) = (3.0 * body.contact_nodes, (body.nodes / body.cubes).cbrt());
+            BORDER * rows.powi(2) * 3.0 * thickness.powi(2)
+        };
+        let factor = |body: &BodySize| WHOLE * body_factor_values(body).powi(2) / (3.0 * body.nodes);
+        let whole = |body: &BodySize| factor(body) + border(body) + inverses(body);
         let piece = |body: &BodySize| 3.0 * body.piece_nodes;
         Self {
             torn_factorization: size.sum(|body| body.pieces * factorization(factor_values(piece(body)), piece(body))),
             product: size.sum(|body| body.pieces * 4.0 * factor_values(piece(body))),
             condensation: size.sum(whole),
             condensed_step: 2.0 / 3.0 * rows.powi(3),
+            solution: size.sum(|body| 4.0 * body_factor_values(body)),
         }
     }
 
-    /// Products with F that cost as much as a state by direct condensation.
-    pub(crate) fn products_per_condensed_state(&self) -> usize {
-        ((self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
+    /// Products with F that total FETI may take before direct condensation takes its place.
+    pub(crate) fn most_products(&self) -> usize {
+        (PATIENCE * (self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
     }
 
-    /// Seconds of a state with its adjoint by direct condensation and by total FETI, on two cores of 2025, roughly.
-    pub(crate) fn seconds(&self, problem: &ContactProblem) -> [f64; 2] {
+    /// Seconds of a state with its adjoint and so many columns of a Jacobian by direct condensation and by total FETI,
+    /// on two cores of 2025, roughly.
+    pub(crate) fn seconds(&self, problem: &ContactProblem, columns: usize) -> [f64; 2] {
+        let (products, columns) = (expected_products(problem), columns as f64);
         let direct = (self.condensation + EXPECTED_STEPS * self.condensed_step) / FACTORING;
-        [direct, (self.torn_factorization + expected_products(problem) * self.product) / SOLVING]
+        let torn = self.torn_factorization / TORN_FACTORING + products * self.product / SOLVING;
+        // By direct condensation, a column takes a solution for the contact nodes and another one for all nodes.
+        let of_columns = [2.0 * self.solution, COLUMN_SHARE * products * self.product];
+        [direct + columns * of_columns[0] / SOLVING_COLUMNS, torn + columns * of_columns[1] / SOLVING_COLUMNS]
     }
 
     /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of a usual state.

@@ -3,9 +3,9 @@
 //! The choice takes what an estimate of both ways says is faster: total FETI, for at most as many products with F as a
 //! state by direct condensation costs, and direct condensation where it finds no state, or none that is clearly
 //! accurate; or direct condensation first. This comes first as well where total FETI loses digits (nearly
-//! incompressible standard bricks, bricks of extreme shape), for a shape similar to one that needed it, and where
-//! Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats the
-//! choice. Bodies too large to be condensed leave total FETI alone.
+//! incompressible standard bricks, bricks of extreme shape), and for a shape similar to one that needed it. Jacobians
+//! that will be wanted count. Sizes and counted work alone decide, so that a resumed run repeats the choice. Bodies too
+//! large to be condensed leave total FETI alone.
 
 use crate::direct::{CondensedShelf, DirectSolver, DirectState};
 use crate::equilibrium::{
@@ -29,9 +29,6 @@ const MIN_PRODUCTS: usize = 100;
 /// measure forces and lengths in different units, a defect of the gluing grows along a slender body, and bodies that a
 /// few nodes hold enlarge what is left by some 4000. States of ordinary scenes stand at 2e-13.
 const COMFORTABLE_SHARE: f64 = 1e-4;
-/// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time
-/// with all its derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
-const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
 /// Estimated time of total FETI over that of direct condensation above which the latter comes first: estimates are
 /// rough, and what total FETI finds has residuals that know of all rounding.
 const CLEARLY_SLOWER: f64 = 1.25;
@@ -66,17 +63,13 @@ impl Order {
             return Self::Torn(DualMethod::default());
         }
         let estimate = WorkEstimate::of(scene);
-        let products = estimate.products_per_condensed_state();
-        let max_products = products.max(MIN_PRODUCTS);
-        let with_jacobians = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
-        let [direct, torn] = estimate.seconds(problem);
+        let max_products = estimate.most_products().max(MIN_PRODUCTS);
+        let columns = if wanted == Wanted::Jacobians { scene.control_count() } else { 0 };
+        let [direct, torn] = estimate.seconds(problem, columns);
         // Clusters are asked for by those who want total FETI. Processes have no part in the choice: it is that of one.
         let is_slower = options.clusters.is_none() && torn > CLEARLY_SLOWER * direct;
-        let cheaper = match (with_jacobians, is_slower) {
-            (true, _) => Some("Jacobians of all pressures cost least there".to_owned()),
-            (false, true) => Some(format!("it takes an estimated share of {:.2} of the time", direct / torn)),
-            (false, false) => None,
-        };
+        let share = || format!("it takes an estimated share of {:.2} of the time", direct / torn);
+        let cheaper = is_slower.then(share);
         match problem.ill_conditioned().or(cheaper) {
             Some(reason) => Self::DirectFirst(max_products, reason),
             None => Self::TornFirst(max_products),
