@@ -7,6 +7,8 @@ use crate::solvers::{SolverKind, SolverPlan};
 use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
 use crate::work_estimate::{body_factor_values, factor_values};
 
+/// Estimated bytes up to which `auto` condenses bodies: a constant, since free memory must not change a result.
+pub(crate) const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Bytes of one number.
 const NUMBER: f64 = 8.0;
 /// Dual vectors that a solve keeps: directions, their images and jumps, Krylov bases.
@@ -43,8 +45,8 @@ impl Estimate {
 }
 
 /// The estimate for a scene, with `columns` of the Jacobian of its forces (0: states and adjoints only), on that of so
-/// many `processes` which owns most subdomains. The kind `auto` counts as total FETI: it condenses what takes little
-/// memory only.
+/// many `processes` which owns most subdomains. The kind `auto` takes the larger of both solvers, as long as bodies are
+/// small enough to be condensed.
 pub(crate) fn estimate(
     scene: &Scene,
     kind: SolverKind,
@@ -52,6 +54,12 @@ pub(crate) fn estimate(
     columns: usize,
     processes: usize,
 ) -> Estimate {
+    if kind == SolverKind::Auto {
+        let [direct, torn] = [SolverKind::Direct, SolverKind::Newton]
+            .map(|kind| estimate(scene, kind, preconditioner, columns, processes));
+        let is_larger = (torn.of_cases(1)..=MAX_CONDENSED_BYTES).contains(&direct.of_cases(1));
+        return if is_larger { direct } else { torn };
+    }
     let size = SceneSize::of(scene);
     let contact = 3.0 * size.contact_nodes;
     if kind == SolverKind::Direct {

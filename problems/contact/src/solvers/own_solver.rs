@@ -21,8 +21,6 @@ use crate::tfeti::{DualMethod, TornOptions, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
 use std::sync::{Arc, OnceLock};
 
-/// Estimated bytes up to which `auto` condenses bodies: a constant, since free memory must not change a result.
-const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
 const MIN_PRODUCTS: usize = 100;
 /// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers
@@ -59,7 +57,9 @@ impl Order {
     /// The order of `auto`.
     fn chosen(problem: &ContactProblem, options: &TornOptions, wanted: Wanted) -> Self {
         let scene = &problem.scene;
-        if memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1).of_cases(1) > MAX_CONDENSED_BYTES {
+        if memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1).of_cases(1)
+            > memory::MAX_CONDENSED_BYTES
+        {
             return Self::Torn(DualMethod::default());
         }
         let estimate = WorkEstimate::of(scene);

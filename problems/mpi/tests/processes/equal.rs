@@ -13,6 +13,7 @@ fn an_evaluation_has_the_same_bits_on_any_number_of_processes_and_threads() {
         ("hertz", vec!["--solver", "newton", "--mesh", "4", "--friction", "0"]),
         ("signorini", vec!["--solver", "direct", "--mesh", "4"]),
         ("hertz", vec!["--mesh", "4"]),
+        ("lug_tet10", vec!["--solver", "newton"]),
     ];
     for (name, options) in cases {
         let scene = scene(name);
