@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _options
 from ._engine import OutsideDomain
+from ._meshes import from_meshio
 from ._minimize import drive, journal_of, told
 from ._numbers import real
 
@@ -265,7 +266,7 @@ class Scene:
             Positions of the nodes, mm, or in ``unit`` of the body. Each belongs to a cell.
         cells : array_like of int, (m, 8) or (m, 10)
             Numbers of the nodes of the cells, from 0, in the order of Gmsh; tetrahedra of four nodes (m, 4) get those in the middles of
-            their edges. meshio has another order for tetrahedra of ten nodes: its last two columns change places.
+            their edges. `from_meshio` makes these arrays of a mesh of another program.
         faces : dict of str to array_like of int, (k, 4) or (k, 3)
             Named faces of the body, each as the corners of its facets: what the scene calls a face of supports, loads and contact.
         path : path, optional
