@@ -26,7 +26,8 @@ pub(super) struct CondensedAdjoint {
     pub(super) error_terms: Vec<f64>,
 }
 
-/// The adjoint at a state, with the factor of its Newton matrix, for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies; no loads if J does not depend on u.
+/// The adjoint at a state, with the factor of its Newton matrix, for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies;
+/// no loads if J does not depend on u.
 pub(super) fn adjoint(
     contact: &CompliantContact,
     (unknowns, linearizations): (&[f64], &[Linearization]),

@@ -36,7 +36,8 @@ pub(super) struct CondensedTangents {
     pub amplitudes: Vec<Vec<f64>>,
 }
 
-/// Tangents of forces and openings at given derivatives, with the factor of Newton's matrix there, for what changes of the shape do to the contact problem.
+/// Tangents of forces and openings at given derivatives, with the factor of Newton's matrix there, for what changes of
+/// the shape do to the contact problem.
 pub(super) fn tangents(
     contact: &CompliantContact,
     (linearizations, active): (&[Linearization], &ActiveFactor),
