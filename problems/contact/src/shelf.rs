@@ -67,13 +67,6 @@ impl<K: PartialEq, F> Shelf<K, F> {
         alive.into_iter().find(is_same).map(|(_, factors)| factors)
     }
 
-    /// All factors of a key that somebody holds.
-    pub fn of_key(&self, key: &Arc<K>) -> Vec<Arc<Factored<F>>> {
-        let entries: Vec<Entry<K, F>> = self.entries().clone();
-        let own = entries.into_iter().filter(|(other, _)| Arc::ptr_eq(other, key));
-        own.filter_map(|(_, factors)| factors.upgrade()).collect()
-    }
-
     /// Lets others find some factors.
     pub fn put(&self, key: &Arc<K>, factors: &Arc<Factored<F>>) {
         self.entries().push((Arc::clone(key), Arc::downgrade(factors)));

@@ -92,3 +92,57 @@ fn an_exported_mesh_keeps_surfaces_between_cells_and_tags_of_groups() {
     let tags: Vec<(&str, u32)> = mesh.group_tags.iter().map(|((_, name), tag)| (&**name, *tag)).collect();
     assert_eq!(tags, [("between", 40), ("ends", 9), ("foot", 77), ("head", 5), ("body", 6)]);
 }
+
+/// The numbers of all lines below a keyword of an input file of CalculiX, up to the next one.
+fn below(text: &str, keyword: &str) -> Vec<Vec<f64>> {
+    let lines = text.lines().skip_while(|line| *line != keyword).skip(1).take_while(|line| !line.starts_with('*'));
+    let numbers = |line: &str| line.split(',').map(|number| number.trim().parse().unwrap()).collect();
+    lines.map(numbers).collect()
+}
+
+#[test]
+fn a_deck_of_calculix_has_the_loads_and_supports_of_its_case() {
+    let scene = format!("{}/scenes/bracket.toml", env!("CARGO_MANIFEST_DIR"));
+    let folder = kit::scratch();
+    for (case, force) in [("upright", [0.0, 0.0, -39000.0]), ("forward", [16480.0, 0.0, -35350.0])] {
+        let out = folder.path().join(case);
+        kit::json(CONTACT, &[&scene, "export", "--inp", "--case", case, "--out", text(&out), "--json"]);
+        let deck = std::fs::read_to_string(out.join("body.inp")).unwrap();
+        let mut sum = [0.0; 3];
+        below(&deck, "*CLOAD").iter().for_each(|load| sum[load[1] as usize - 1] += load[2]);
+        assert!(sum.iter().zip(force).all(|(sum, force)| (sum - force).abs() < 1e-6), "{sum:?}");
+        let nodes = below(&deck, "*NODE, NSET=ALL_NODES");
+        assert_eq!((nodes.len(), below(&deck, "*ELEMENT, TYPE=C3D10, ELSET=ALL_ELEMENTS").len()), (6831, 3676));
+        assert_eq!(below(&deck, "*ELASTIC"), [[1.69e5, 0.275]]);
+        let members = |name: &str| below(&deck, &format!("*NSET, NSET={name}")).concat();
+        let held = below(&deck, "*BOUNDARY");
+        let holds = |node: f64, axis: f64| held.contains(&vec![node, axis, axis, 0.0]);
+        assert!(members("SEAT").iter().all(|&node| [1.0, 2.0, 3.0].iter().all(|&axis| holds(node, axis))));
+        assert!(members("STOP").iter().all(|&node| holds(node, 1.0)));
+        let plane = members("SYMMETRY");
+        assert!(plane.iter().all(|&node| holds(node, 2.0) && nodes[node as usize - 1][2].abs() < 1e-9));
+    }
+}
+
+#[test]
+fn supports_along_other_directions_than_axes_are_equations() {
+    // The sides of the taper's sector of 30 degrees are held along their normals.
+    let scene = format!("{}/scenes/taper.toml", env!("CARGO_MANIFEST_DIR"));
+    let folder = kit::scratch();
+    let out = folder.path().join("deck");
+    kit::json(CONTACT, &[&scene, "export", "--inp", "--out", text(&out), "--json"]);
+    let deck = std::fs::read_dir(&out).unwrap().map(|file| file.unwrap().path());
+    let deck = deck.filter(|path| path.extension().is_some_and(|ending| ending == "inp"));
+    let deck: String = deck.map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    let lines: Vec<&str> = deck.lines().collect();
+    let equations = lines.windows(3).filter(|lines| lines[0] == "*EQUATION");
+    let mut count = 0;
+    for equation in equations {
+        let terms: Vec<f64> = equation[2].split(',').map(|number| number.trim().parse().unwrap()).collect();
+        assert_eq!(terms.len(), 3 * equation[1].parse::<usize>().unwrap());
+        // One node, the first factor not 0.
+        assert!(terms.chunks(3).all(|term| term[0] == terms[0]) && terms[2].abs() > 0.1, "{terms:?}");
+        count += 1;
+    }
+    assert!(count > 50, "{count}");
+}

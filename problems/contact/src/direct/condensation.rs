@@ -21,8 +21,11 @@ use crate::linear::vector::add_scaled;
 use faer::Mat;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
+/// Values of a factor above which it is given back when that of another shape is computed: two of them are more than a
+/// machine that holds one may have.
+const LARGE_FACTOR: usize = 1 << 25;
 /// Sizes of the rows of the motions that differ by rounding.
 const EQUAL_SIZES: f64 = 1e-9;
 
@@ -37,7 +40,12 @@ pub struct CondensationPattern {
     pub(super) contact: Vec<usize>,
     /// These nodes by their numbers in the mesh.
     contact_nodes: Vec<u32>,
+    /// The factor that was computed last, of any shape.
+    latest: Mutex<Weak<Slot>>,
 }
+
+/// A factor; none after it has been given back.
+type Slot = Mutex<Option<Arc<NumericFactor>>>;
 
 /// A condensed body without loads.
 #[derive(Debug)]
@@ -51,8 +59,8 @@ pub struct CondensedBody {
     pub(super) foundation: Option<f64>,
     /// B by rows: dof of the body, value.
     rows: Vec<Vec<(usize, f64)>>,
-    /// The factor of K̂; none after it has been given back.
-    factor: Mutex<Option<Arc<NumericFactor>>>,
+    /// The factor of K̂.
+    factor: Arc<Slot>,
     /// K̂.
     matrix: Vec<f64>,
     /// The stiffness of every contact node, N/mm: where the others stand on the foundation, else the diagonal of K.
@@ -69,7 +77,7 @@ impl CondensationPattern {
         let known = contact.iter().filter_map(|&node| Some((node, piece.local(node)?)));
         let (contact_nodes, contact): (Vec<u32>, Vec<usize>) = known.unzip();
         let (axes, symbolic) = (NodalAxes::new(body, &piece), piece.pattern.symbolic(&[])?);
-        Ok(Self { axes, piece, symbolic, contact, contact_nodes })
+        Ok(Self { axes, piece, symbolic, contact, contact_nodes, latest: Mutex::default() })
     }
 
     /// Condenses one shape; `motions`: the free rigid motions over the dofs of the body, independent, 0 at held dofs.
@@ -96,10 +104,20 @@ impl CondensationPattern {
         }
         let weights = body.trace.weights(positions);
         let rows = self.rows(body, &weights);
+        self.give_latest_back(LARGE_FACTOR);
         let (factor, compliance) = self.symbolic.factorize_bordered(&values, &rows)?;
         let local = foundation.map_or(diagonal, |foundation| on_foundation(&compliance, foundation));
-        let (pattern, factor) = (Arc::clone(self), Mutex::new(Some(Arc::new(factor))));
+        let (pattern, factor) = (Arc::clone(self), Arc::new(Mutex::new(Some(Arc::new(factor)))));
+        *self.latest.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(&factor);
         Ok(CondensedBody { pattern, weights, compliance, foundation, rows, factor, matrix: values, local })
+    }
+
+    /// Gives the factor back that was computed last, where it has more than so many values.
+    pub(super) fn give_latest_back(&self, most: usize) {
+        let latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner).upgrade();
+        if let Some(slot) = latest {
+            slot.lock().unwrap_or_else(PoisonError::into_inner).take_if(|factor| factor.value_count() > most);
+        }
     }
 
     /// The place of a node of the mesh among the nodes in contact rows.
@@ -276,17 +294,18 @@ impl CondensedBody {
 
     /// The factor of K̂, computed again after it has been given back.
     fn factor(&self) -> Arc<NumericFactor> {
-        let mut factor = self.factor.lock().unwrap_or_else(PoisonError::into_inner);
+        let lock = || self.factor.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = &*lock() {
+            return Arc::clone(known);
+        }
+        // No lock is held while another one is waited for.
+        self.pattern.give_latest_back(LARGE_FACTOR);
+        *self.pattern.latest.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(&self.factor);
+        let mut factor = lock();
         let again = || {
             let found = self.pattern.symbolic.factorize_bordered(&self.matrix, &self.rows);
             Arc::new(found.expect("invariant: the matrix has been factored before").0)
         };
         Arc::clone(factor.get_or_insert_with(again))
-    }
-
-    /// Gives the factor of K̂ back where it has more than so many values.
-    pub(super) fn give_back(&self, most: usize) {
-        let mut factor = self.factor.lock().unwrap_or_else(PoisonError::into_inner);
-        factor.take_if(|factor| factor.value_count() > most);
     }
 }

@@ -36,7 +36,7 @@ mod tests {
         let found = [false, true].map(|gives_back| {
             let state = solver.solve(&controls, None, 1e-10).expect("a state").solution;
             if gives_back {
-                state.contact.bodies.iter().for_each(|body| body.stiff().condensed.give_back(0));
+                solver.patterns.iter().for_each(|pattern| pattern.give_latest_back(0));
             }
             solver.bodies(&state).expect("bodies")
         });

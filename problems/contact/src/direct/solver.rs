@@ -24,9 +24,6 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 
-/// Values of a factor above which it is given back when another shape of the body is factored: two such factors are
-/// more than a machine that holds one may have.
-const LARGE_FACTOR: usize = 1 << 25;
 /// How states are found by Newton's method.
 const BY_NEWTON: &str = "semismooth Newton on condensed bodies, with continuation in the contact compliance";
 /// How states are found where Newton's method fails.
@@ -111,9 +108,6 @@ impl DirectSolver {
         let factored = match known {
             Some(known) => known,
             None => {
-                let older = self.shelf.bodies.of_key(key);
-                older.iter().for_each(|older| older.factors.condensed.give_back(LARGE_FACTOR));
-                drop(older);
                 let factors = CompliantBody::new(&self.patterns[number], (body, rigid), number, positions)?;
                 let factored = Arc::new(Factored { positions: Arc::clone(positions), factors });
                 self.shelf.bodies.put(key, &factored);

@@ -284,6 +284,11 @@ impl ContactProblem {
         vec![[0.0; 3]; self.map.point_count()]
     }
 
+    /// The loads of a body at the positions of its points: nodes with forces, N, several per node.
+    pub fn nodal_loads(&self, body: usize, positions: &[[f64; 3]]) -> Vec<(u32, [f64; 3])> {
+        nodal_forces(&self.bodies[body], positions)
+    }
+
     /// The bodies as a rigid body analysis takes them.
     pub fn rigid_scene(&self, positions: &Positions, rows: &ContactRows) -> RigidScene {
         let (mut held, mut loads) = (Vec::new(), Vec::new());

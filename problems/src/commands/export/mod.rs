@@ -1,6 +1,7 @@
 //! `export`: a shape as files for other programs. Nothing is solved for it.
 
 mod change;
+mod deck;
 mod files;
 mod friction;
 mod mesh;
@@ -47,7 +48,7 @@ struct FileJson {
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (arguments, case) = (session.arguments, &loaded.case);
     let options = &arguments.export;
-    let scene = match options.friction_problem {
+    let scene = match options.friction_problem || options.inp {
         true => &case.named(options.case.as_deref()).map_err(|error| arguments.changes().blame(error))?.scene,
         false => &case.scene,
     };
@@ -121,6 +122,9 @@ fn files(
     }
     if options.vtu || is_mesh {
         files.extend(mesh::vtk_files(problem, controls)?);
+    }
+    if options.inp {
+        files.extend(deck::files(problem, controls)?);
     }
     if options.friction_problem {
         files.extend(friction::matrices(problem, controls)?);

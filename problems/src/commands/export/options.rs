@@ -16,8 +16,8 @@ pub struct ExportOptions {
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
     /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv,
-    /// --msh, --vtu, --friction-problem, triangles, STEP and tables are written, or for a mesh --stl, --csv, --msh and
-    /// --vtu.
+    /// --msh, --vtu, --inp, --friction-problem, triangles, STEP and tables are written, or for a mesh --stl, --csv,
+    /// --msh and --vtu.
     #[arg(long)]
     pub stl: bool,
     /// The B-spline surface, and the body as a solid, for CAD systems.
@@ -32,10 +32,14 @@ pub struct ExportOptions {
     /// The mesh of every optimized body in this shape as a VTU file, with its change from the start.
     #[arg(long)]
     pub vtu: bool,
+    /// The mesh of every optimized body in this shape with its supports and loads as input of CalculiX, without
+    /// contact.
+    #[arg(long)]
+    pub inp: bool,
     /// Stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.
     #[arg(long)]
     pub friction_problem: bool,
-    /// With --friction-problem: the load case of a scene that has several.
+    /// With --friction-problem or --inp: the load case of a scene that has several.
     #[arg(long, value_name = "NAME")]
     pub case: Option<String>,
 }
@@ -43,7 +47,7 @@ pub struct ExportOptions {
 impl ExportOptions {
     /// Whether no format is named.
     pub fn is_free(&self) -> bool {
-        !(self.stl || self.step || self.csv || self.msh || self.vtu || self.friction_problem)
+        !(self.stl || self.step || self.csv || self.msh || self.vtu || self.inp || self.friction_problem)
     }
 
     /// Refuses options that do not go together; `has_folder`, `has_controls`: `--out` and `--controls` are given.
@@ -57,8 +61,8 @@ impl ExportOptions {
         if has_controls && self.run.is_some() {
             return refused("--controls", "without --run, which names the shape");
         }
-        if self.case.is_some() && !self.friction_problem {
-            return refused("--case", "with --friction-problem only: the shape is the same in all cases");
+        if self.case.is_some() && !(self.friction_problem || self.inp) {
+            return refused("--case", "with --friction-problem or --inp only: the shape is the same in all cases");
         }
         Ok(())
     }
