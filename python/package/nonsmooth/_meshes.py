@@ -11,8 +11,8 @@ _CELLS = {
         [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)],
     ),
 }
-#: Cells that have no place in a body: what lies on its skin, on lines and at points.
-_BELOW = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
+#: Cells on the skin of a body, with their number of corners.
+_FACETS = {"triangle": 3, "triangle6": 3, "quad": 4}
 
 
 def from_meshio(mesh, faces=None):
@@ -93,13 +93,13 @@ def _facet_sets(mesh):
     for name, blocks in mesh.cell_sets.items():
         if not str(name).startswith("gmsh:"):
             for block, members in zip(mesh.cells, blocks):
-                if block.type in _BELOW and members is not None and len(members):
-                    _add(sets, str(name), np.asarray(block.data)[np.asarray(members, dtype=int), : _BELOW[block.type]])
+                if block.type in _FACETS and members is not None and len(members):
+                    _add(sets, str(name), np.asarray(block.data)[np.asarray(members, dtype=int), : _FACETS[block.type]])
     for name, (tag, dimension) in mesh.field_data.items():
         if dimension == 2 and "gmsh:physical" in mesh.cell_data:
             for block, tags in zip(mesh.cells, mesh.cell_data["gmsh:physical"]):
-                if block.type in _BELOW and (tags == tag).any():
-                    _add(sets, str(name), np.asarray(block.data)[tags == tag, : _BELOW[block.type]])
+                if block.type in _FACETS and (tags == tag).any():
+                    _add(sets, str(name), np.asarray(block.data)[tags == tag, : _FACETS[block.type]])
     return sets
 
 

@@ -178,9 +178,7 @@ impl ActiveSystem {
 
     /// Puts springs along the motions.
     pub(super) fn with_springs(mut self, spring: f64) -> Self {
-        for motion in self.kept..self.matrix.nrows() {
-            self.matrix[(motion, motion)] = spring;
-        }
+        put_springs(&mut self.matrix, self.kept, spring);
         self
     }
 
@@ -198,7 +196,7 @@ impl ActiveSystem {
         self.matrix.nrows() - self.kept
     }
 
-    /// Forces over all packed rows from those over the rows of M, one column each.
+    /// Forces over all packed rows from those over the rows of M, one column each; what follows these is not read.
     fn spread(&self, contact: &CompliantContact, forces: &Mat<f64>) -> Mat<f64> {
         let mut spread = Mat::zeros(contact.row_count(), forces.ncols());
         for column in 0..forces.ncols() {
@@ -213,21 +211,23 @@ impl ActiveFactor {
     /// Factors a system, with springs along the motions that the system itself need not have: refinement takes them
     /// off again wherever the system determines the answer.
     pub(super) fn new(system: ActiveSystem, spring: Option<f64>) -> Self {
-        let Some(spring) = spring.filter(|_| system.motions() > 0) else {
-            let factors = DenseLu::new(&system.matrix);
-            return Self { system, factors };
-        };
-        let mut sprung = system.matrix.clone();
-        for motion in system.kept..sprung.nrows() {
-            sprung[(motion, motion)] = spring;
-        }
-        let factors = DenseLu::new(&sprung);
+        let sprung = spring.filter(|_| system.motions() > 0).map(|spring| {
+            let mut sprung = system.matrix.clone();
+            put_springs(&mut sprung, system.kept, spring);
+            sprung
+        });
+        let factors = DenseLu::new(sprung.as_ref().unwrap_or(&system.matrix));
         Self { system, factors }
     }
 
     /// The packed rows of the nodes that are not open: the rows of M.
     pub(super) fn rows(&self) -> &[usize] {
         &self.system.rows
+    }
+
+    /// Forces over all packed rows of solutions, one column each.
+    pub(super) fn forces(&self, contact: &CompliantContact, solutions: &Mat<f64>) -> Mat<f64> {
+        self.system.spread(contact, solutions)
     }
 
     /// M⁻¹ r over the rows of M, then the motions, refined once.
@@ -333,6 +333,11 @@ impl ActiveFactor {
         }
         solution
     }
+}
+
+/// Springs along the motions, which follow the rows of the nodes.
+fn put_springs(matrix: &mut Mat<f64>, rows: usize, spring: f64) {
+    (rows..matrix.nrows()).for_each(|motion| matrix[(motion, motion)] = spring);
 }
 
 /// M⁻¹ B by a factor of a matrix near M, refined against M; also the largest relative residual of a column.

@@ -45,8 +45,7 @@ pub(super) fn tangents(
 ) -> CondensedTangents {
     let ShapeLoads { responses, approaches, .. } = loads;
     let boundary = &contact.problem.boundary;
-    let (count, motions) = (contact.row_count(), contact.resultant.len());
-    let size = active.rows().len();
+    let (size, motions) = (active.rows().len(), contact.resultant.len());
     let driving = |(column, approach): (usize, &Vec<f64>)| driving(contact, responses, column, approach);
     let driven: Vec<(Vec<f64>, Vec<f64>)> = approaches.iter().enumerate().map(driving).collect();
     let mut right = Mat::<f64>::zeros(size + motions, approaches.len());
@@ -66,11 +65,7 @@ pub(super) fn tangents(
         right[size..].copy_from_slice(resultant);
     }
     let (solution, residual) = active.solve_columns(contact, &right);
-    let mut forces = Mat::<f64>::zeros(count, approaches.len());
-    for column in 0..approaches.len() {
-        let (own, target) = (solution.col_as_slice(column), forces.col_as_slice_mut(column));
-        active.rows().iter().zip(own).for_each(|(&row, force)| target[row] = *force);
-    }
+    let forces = active.forces(contact, &solution);
     let products = multiply_columns(&contact.compliance, &forces);
     let areas = loads.areas.clone();
     let (of_forces, openings) = (Vec::new(), Vec::new());

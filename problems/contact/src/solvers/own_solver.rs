@@ -1,7 +1,7 @@
 //! The contact solver of one process: total FETI, direct condensation, or the choice between them.
 //!
-//! The choice takes what an estimate of both ways says is faster: total FETI, for at most as many products with F as a
-//! state by direct condensation costs, and direct condensation where it finds no state, or none that is clearly
+//! The choice takes what an estimate of both ways says is faster: total FETI, for at most 1.6 times the operations of a
+//! state by direct condensation, and direct condensation where it finds no state, or none that is clearly
 //! accurate; or direct condensation first. This comes first as well where total FETI loses digits (nearly
 //! incompressible standard bricks, bricks of extreme shape), and for a shape similar to one that needed it. Jacobians
 //! that will be wanted count. Sizes and counted work alone decide, so that a resumed run repeats the choice. Bodies too

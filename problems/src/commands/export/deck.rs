@@ -9,7 +9,7 @@ use contact::equilibrium::ContactProblem;
 use exchange::calculix::{Deck, ElementKind, Part};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A displacement that supports hold along other directions than axes is left out below this component.
+/// Size up to which a component of a unit vector is rounding.
 const NO_COMPONENT: f64 = 1e-12;
 
 /// A file per optimized body.

@@ -67,7 +67,7 @@ impl Division<'_> {
         let left = count / 2;
         let mut cut = Cut::new(self.neighbours, cells, cells.len() * left / count);
         cut.refine();
-        let size = cut.size(false);
+        let size = cut.first;
         // Stable, so that each side keeps its order.
         cells.sort_by_key(|cell| cut.is_second[cell]);
         let (first, second) = cells.split_at_mut(size);
@@ -93,10 +93,6 @@ impl<'a> Cut<'a> {
         let is_second = cells.iter().zip(0..).map(|(&cell, place)| (cell, place >= first)).collect();
         let room = (UNEQUAL * first.min(cells.len() - first) as f64) as usize;
         Self { neighbours, is_second, first, allowed: first - room..=first + room }
-    }
-
-    fn size(&self, second: bool) -> usize {
-        if second { self.is_second.len() - self.first } else { self.first }
     }
 
     /// Faces that leave the cut, less those that enter it, when a cell changes sides.
