@@ -40,8 +40,8 @@ const SOLVING: f64 = 2.0e9;
 const SOLVING_COLUMNS: f64 = 7.0e9;
 /// Products with F of a state with its adjoint, for cubes of bricks in one body.
 const EXPECTED_PRODUCTS: f64 = 60.0;
-/// Its factors for pieces of meshes, whose boundaries are rough, for tetrahedra, whose products take longer as well, for
-/// pairs of bodies, and for nearly incompressible material.
+/// Its factors for pieces of meshes, whose boundaries are rough, for tetrahedra, whose products take longer as well,
+/// for pairs of bodies, and for nearly incompressible material.
 const ROUGH: f64 = 1.7;
 const TETRAHEDRA: f64 = 1.6;
 const PAIRS: f64 = 1.5;
