@@ -54,6 +54,14 @@ pub enum SceneError {
         /// The error inside the file.
         source: Box<SceneError>,
     },
+    /// A scene file leaves open what only the user knows.
+    #[error("{source}; {}", open.join("; "))]
+    Open {
+        /// What cannot be computed without it.
+        source: Box<SceneError>,
+        /// The lines that ask.
+        open: Vec<String>,
+    },
     /// A list has the wrong length.
     #[error("{what}: {found} numbers found, {expected} expected")]
     WrongCount {

@@ -74,7 +74,7 @@ pub mod load_cases;
 pub mod memory;
 mod mortar;
 pub mod names;
-mod patches;
+pub mod patches;
 pub mod plausibility;
 pub mod qp;
 mod scalar;

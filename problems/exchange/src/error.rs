@@ -54,8 +54,8 @@ pub enum ExchangeError {
         /// Description of the allowed values.
         allowed: String,
     },
-    /// The STL file was not written.
-    #[error("the STL file cannot be made: {0}")]
+    /// The STL file was not written or not read.
+    #[error("the STL file: {0}")]
     Stl(String),
 }
 

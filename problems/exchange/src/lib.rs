@@ -1,4 +1,4 @@
-//! Triangles as STL files; surfaces over a rectangle, and bodies below them, as STEP files; matrices as Matrix Market
+//! Triangles as STL files, which are read too; surfaces over a rectangle, and bodies below them, as STEP files; matrices as Matrix Market
 //! files; grids with data as VTU files; volume meshes as Gmsh files, which are read too, and as input of CalculiX.
 //!
 //! ```text
@@ -21,4 +21,4 @@ mod stl;
 pub mod vtk;
 
 pub use error::ExchangeError;
-pub use stl::{Triangle, stl};
+pub use stl::{Triangle, read_stl, stl};

@@ -1,4 +1,4 @@
-//! Triangles as a binary STL file.
+//! Triangles as STL files: binary ones are written, binary and text ones read.
 
 use crate::error::ExchangeError;
 use stl_io::{Normal, Vertex, write_stl};
@@ -21,6 +21,22 @@ pub fn stl(triangles: &[Triangle]) -> Result<Vec<u8>, ExchangeError> {
     write_stl(&mut bytes, triangles).map_err(|error| ExchangeError::Stl(error.to_string()))?;
     bytes[..HEADER.len()].copy_from_slice(HEADER);
     Ok(bytes)
+}
+
+/// Places and triangles of an STL file, binary or text: corners that agree in all bits are one place. Triangles are
+/// counterclockwise as seen from outside; the normals of the file are not used.
+///
+/// # Errors
+/// [`ExchangeError::Stl`] for bytes that are no such file.
+pub fn read_stl(bytes: &[u8]) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), ExchangeError> {
+    let refused = |reason: String| ExchangeError::Stl(reason);
+    let mesh = stl_io::read_stl(&mut std::io::Cursor::new(bytes)).map_err(|error| refused(error.to_string()))?;
+    let count = mesh.vertices.len();
+    if u32::try_from(count).is_err() {
+        return Err(refused(format!("{count} places are too many")));
+    }
+    let places = mesh.vertices.iter().map(|vertex| vertex.0.map(f64::from)).collect();
+    Ok((places, mesh.faces.iter().map(|face| face.vertices.map(|place| place as u32)).collect()))
 }
 
 /// The outward unit normal; zero for a triangle without area.

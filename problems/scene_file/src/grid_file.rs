@@ -1,8 +1,8 @@
-//! Grids of heights or pressures from CSV files.
+//! Grids of heights or pressures, and profiles, from CSV files.
 
 use crate::text::read_text;
 use contact::error::SceneError;
-use contact::scene::HeightGrid;
+use contact::scene::{HeightGrid, Profile};
 use std::path::Path;
 
 /// Most numbers along an edge of a grid.
@@ -30,6 +30,18 @@ pub(super) fn read(file: &Path, size: [f64; 2], unit: &str) -> Result<HeightGrid
     let within = |source| SceneError::InFile { file: file.display().to_string(), source: Box::new(source) };
     let (counts, heights) = numbers(&read_grid(file)?, unit).map_err(within)?;
     HeightGrid::new(size, counts, heights).map_err(within)
+}
+
+/// The curve through the points of a file: radius and height of one per line, mm.
+///
+/// # Errors
+/// As [`read_text`]; as [`numbers`] and [`Profile::new`], with the file.
+pub(super) fn profile(file: &Path) -> Result<Profile, SceneError> {
+    let within = |source| SceneError::InFile { file: file.display().to_string(), source: Box::new(source) };
+    let ([_, columns], values) = numbers(&read_grid(file)?, "mm").map_err(within)?;
+    let allowed = "2: radius and height of a point of the profile";
+    SceneError::require(columns == 2, "count of numbers per line", columns, allowed).map_err(within)?;
+    Profile::new(values.as_chunks::<2>().0.to_vec()).map_err(within)
 }
 
 /// Numbers of lines and columns, and the numbers of a text line by line.

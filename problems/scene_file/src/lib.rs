@@ -23,6 +23,7 @@ mod lookup;
 mod mesh_check;
 mod mesh_file;
 mod objective;
+mod obstacle_mesh;
 pub mod optimization;
 mod print;
 mod quantity;
@@ -41,7 +42,7 @@ pub use bodies::{BlockSection, BodySection, default_subdomains};
 pub use case::Case;
 pub use contact_section::{ContactSection, FaceSection, FrictionSection};
 pub use continuation::ContinuationMesh;
-pub use draft::draft;
+pub use draft::{draft, open_questions};
 pub use lattice::{CylinderSection, LatticeSection, NodeBoundSection};
 pub use limit::LimitSection;
 pub use load_case::{CaseBodySection, CaseScene, CaseSection};
@@ -63,7 +64,15 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Names of copies of the files of a scene, beside a copy of its own.
-pub const FILES: [&str; 5] = ["obstacle.csv", "start.csv", "wanted_pressure.csv", "continuation.msh", "body.msh"];
+pub const FILES: [&str; 7] = [
+    "obstacle.csv",
+    "obstacle.msh",
+    "obstacle.stl",
+    "start.csv",
+    "wanted_pressure.csv",
+    "continuation.msh",
+    "body.msh",
+];
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -119,8 +128,16 @@ impl SceneFile {
     ///
     /// # Errors
     /// [`SceneError::File`] for text that is no TOML, [`SceneError::UnknownField`] with the nearest name, and
-    /// [`SceneError::Field`] with the path of the field, its value and what is allowed.
+    /// [`SceneError::Field`] with the path of the field, its value and what is allowed; [`SceneError::Open`] with one of
+    /// these for a text that leaves something open.
     pub fn parse(text: &str, name: &str) -> Result<Self, SceneError> {
+        Self::parse_table(text, name).map_err(|source| match open_questions(text) {
+            open if open.is_empty() => source,
+            open => SceneError::Open { source: Box::new(source), open },
+        })
+    }
+
+    fn parse_table(text: &str, name: &str) -> Result<Self, SceneError> {
         let failed = |reason: String| SceneError::File { path: name.to_owned(), reason };
         let table: toml::Table =
             toml::from_str(text).map_err(|error| failed(error.to_string().trim_end().to_owned()))?;
@@ -138,9 +155,17 @@ impl SceneFile {
         Self::parse(&read_text(file, LARGEST_FILE)?, &path)
     }
 
+    /// What a scene file leaves open: [`open_questions`] of its text.
+    ///
+    /// # Errors
+    /// As [`read_text`].
+    pub fn open_questions(file: &Path) -> Result<Vec<String>, SceneError> {
+        Ok(open_questions(&read_text(file, LARGEST_FILE)?))
+    }
+
     /// The files that the scene names, each with the name of its copy beside a copy of the scene.
     pub fn files_mut(&mut self) -> Vec<(String, &mut String)> {
-        let [obstacle, start, wanted, continuation, mesh] = FILES;
+        let [_, _, _, start, wanted, continuation, mesh] = FILES;
         let Self { body: bodies, contact: contacts, optimizer, objective, limit: limits, report: reports, .. } = self;
         let mut files = Vec::new();
         let of_limits = limits.iter_mut().map(|limit| &mut limit.details);
@@ -171,9 +196,8 @@ impl SceneFile {
         }
         let count = contacts.len();
         for (index, contact) in contacts.iter_mut().enumerate() {
-            if let Some(ObstacleSection::Grid { file, .. }) = &mut contact.obstacle {
-                files.push((numbered(obstacle, index, count, ""), file));
-            }
+            let own = contact.obstacle.as_mut().and_then(ObstacleSection::file_mut);
+            files.extend(own.map(|(name, file)| (numbered(name, index, count, ""), file)));
         }
         files
     }

@@ -26,16 +26,24 @@ pub(crate) struct MeshFile {
 /// [`SceneError::File`] for a file that cannot be read and for what the format does not allow; [`SceneError::InFile`]
 /// for cells that are inverted or overlap, a body in several parts, and surfaces that are no faces of cells.
 pub(crate) fn read(file: &Path, unit: UnitName) -> Result<MeshFile, SceneError> {
-    let path = file.display().to_string();
-    let failed = |reason: String| SceneError::File { path: path.clone(), reason };
+    let (path, bytes) = (file.display().to_string(), bytes(file)?);
+    let gmsh =
+        gmsh::read(&bytes).map_err(|error| SceneError::File { path: path.clone(), reason: error.to_string() })?;
+    let name = file.file_name().map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
+    convert(&gmsh, unit, &name).map_err(|source| SceneError::InFile { file: path, source: Box::new(source) })
+}
+
+/// The bytes of a mesh file.
+///
+/// # Errors
+/// [`SceneError::File`] for a file that cannot be read or is too long.
+pub(crate) fn bytes(file: &Path) -> Result<Vec<u8>, SceneError> {
+    let failed = |reason: String| SceneError::File { path: file.display().to_string(), reason };
     let size = fs::metadata(file).map_err(|error| failed(error.to_string()))?.len();
     if size > LARGEST_FILE {
         return Err(failed(format!("the file is too long; allowed: at most {} GiB", LARGEST_FILE >> 30)));
     }
-    let bytes = fs::read(file).map_err(|error| failed(error.to_string()))?;
-    let gmsh = gmsh::read(&bytes).map_err(|error| failed(error.to_string()))?;
-    let name = file.file_name().map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
-    convert(&gmsh, unit, &name).map_err(|source| SceneError::InFile { file: path, source: Box::new(source) })
+    fs::read(file).map_err(|error| failed(error.to_string()))
 }
 
 /// The body of a mesh of Gmsh.

@@ -1,10 +1,10 @@
 //! Obstacles of a scene file, and the heights that shapes start from.
 
 use crate::ObstacleSection;
-use crate::grid_file;
 use crate::lookup::required;
+use crate::{grid_file, obstacle_mesh};
 use contact::error::SceneError;
-use contact::scene::CounterSurface;
+use contact::scene::{CounterSurface, Meridian, Revolution};
 use std::path::Path;
 
 /// A surface of heights, or in space; `field` stands in messages, `base` is the least corner and the lengths of the
@@ -31,8 +31,21 @@ pub(crate) fn obstacle(
         }
         &ObstacleSection::TiltedPlane { point, normal } => CounterSurface::TiltedPlane { point, normal },
         &ObstacleSection::Ball { centre, radius, side } => CounterSurface::Ball { centre, radius, side },
-        &ObstacleSection::Cylinder { point, axis, radius, side } => {
-            CounterSurface::Cylinder { point, axis, radius, side }
+        &ObstacleSection::Cylinder { point, axis, radius, side } => CounterSurface::cylinder(point, axis, radius, side),
+        &ObstacleSection::Cone { point, axis, radius, half_angle, side } => {
+            let meridian = Meridian::Line { radius, slope: half_angle.to_radians().tan() };
+            CounterSurface::Revolution(Revolution { point, axis, side, meridian })
+        }
+        &ObstacleSection::Torus { centre, axis, major_radius, minor_radius, side } => {
+            let meridian = Meridian::Circle { major_radius, minor_radius };
+            CounterSurface::Revolution(Revolution { point: centre, axis, side, meridian })
+        }
+        ObstacleSection::Revolution { file, point, axis, side } => {
+            let meridian = Meridian::Profile(grid_file::profile(&folder.join(file))?);
+            CounterSurface::Revolution(Revolution { point: *point, axis: *axis, side: *side, meridian })
+        }
+        ObstacleSection::Mesh { file, face, unit, side } => {
+            CounterSurface::Mesh(obstacle_mesh::read(field, &folder.join(file), face.as_deref(), *unit, *side)?)
         }
     })
 }

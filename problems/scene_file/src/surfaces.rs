@@ -1,8 +1,10 @@
 //! Surfaces of a scene file: obstacles, faces of blocks, heights at the start.
 
+use crate::{FILES, UnitName};
 use contact::scene::Side;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// A rigid obstacle, the heights of a face of a block, or those that a shape starts from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -92,4 +94,87 @@ pub enum ObstacleSection {
         #[serde(default)]
         side: Side,
     },
+    /// A cone anywhere in space, as far as its apex; an obstacle only.
+    Cone {
+        /// A point of its axis.
+        #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
+        point: [f64; 3],
+        /// Direction of its axis, along which its radius grows, of any length.
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
+        axis: [f64; 3],
+        /// Radius at the point.
+        #[schemars(range(max = 1e12), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
+        radius: f64,
+        /// Angle between the axis and the surface.
+        #[schemars(extend("x-unit" = "degree", "exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
+        half_angle: f64,
+        /// Where the body is: inside for a seat.
+        #[serde(default)]
+        side: Side,
+    },
+    /// A torus anywhere in space: a circle that turns about an axis; an obstacle only.
+    Torus {
+        /// Its centre.
+        #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
+        centre: [f64; 3],
+        /// Direction of its axis, of any length.
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
+        axis: [f64; 3],
+        /// From the axis to the centre of the circle; negative for a barrel, whose circle has its centre beyond the axis.
+        #[schemars(range(min = -1e12, max = 1e12), extend("x-unit" = "mm"))]
+        major_radius: f64,
+        /// Radius of the circle.
+        #[schemars(range(max = 1e12), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
+        minor_radius: f64,
+        /// Where the body is: inside for a groove.
+        #[serde(default)]
+        side: Side,
+    },
+    /// A surface of revolution anywhere in space; an obstacle only.
+    Revolution {
+        /// CSV file beside the scene file: radius and height of one point of the profile per line, in the order of the
+        /// curve; mm. Lines that begin with # are comments.
+        file: String,
+        /// The point of the axis where the height is zero.
+        #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
+        point: [f64; 3],
+        /// Direction of its axis, along which heights grow, of any length.
+        #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
+        axis: [f64; 3],
+        /// Where the body is: outside is away from the axis or, for a closed profile, outside of it.
+        #[serde(default)]
+        side: Side,
+    },
+    /// A face of a mesh anywhere in space; an obstacle only.
+    Mesh {
+        /// Gmsh or STL file beside the scene file.
+        file: String,
+        /// The name of the face in a Gmsh file; an STL file is one face.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        face: Option<String>,
+        /// The unit of lengths in the file.
+        #[serde(default)]
+        unit: UnitName,
+        /// Where the body is: outside where the normals of the facets point to it, which are those of the cells or, in a
+        /// file without cells, those that the order of the corners tells.
+        #[serde(default)]
+        side: Side,
+    },
+}
+
+impl ObstacleSection {
+    /// The file that holds its numbers, and the name that a copy of it has.
+    pub(crate) fn file_mut(&mut self) -> Option<(&'static str, &mut String)> {
+        let [_, mesh, triangles, ..] = FILES;
+        match self {
+            Self::Grid { file, .. } | Self::Revolution { file, .. } => Some((FILES[0], file)),
+            Self::Mesh { file, .. } => Some((if is_stl(Path::new(file)) { triangles } else { mesh }, file)),
+            _ => None,
+        }
+    }
+}
+
+/// Whether a file is one of triangles by its name.
+pub(crate) fn is_stl(file: &Path) -> bool {
+    file.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"))
 }

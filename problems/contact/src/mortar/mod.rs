@@ -31,7 +31,7 @@ mod weights;
 #[cfg(test)]
 mod tests;
 
-pub use curve::{NO_MIDDLE, QuadraticFacet, Remainder};
+pub use curve::{NO_MIDDLE, NODES, Quadratic, QuadraticFacet, Remainder};
 pub use derivative::NodeSensitivity;
 pub use facet::{Face, Facet};
 pub use frame::doubled_area;

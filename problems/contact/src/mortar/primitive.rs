@@ -6,30 +6,56 @@ use crate::scalar::Scalar;
 /// A surface without ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Primitive {
-    /// A plane through a point; the normal has unit length.
-    Plane { point: [f64; 3], normal: [f64; 3] },
-    /// A cylinder about a line; the axis has unit length.
-    Cylinder { point: [f64; 3], axis: [f64; 3], radius: f64 },
-    /// A cone about a line: its radius at the point grows by `slope` per length along the axis of unit length.
-    Cone { point: [f64; 3], axis: [f64; 3], radius: f64, slope: f64 },
+    /// A plane.
+    Plane {
+        /// One of its points, mm.
+        point: [f64; 3],
+        /// Its unit normal.
+        normal: [f64; 3],
+    },
+    /// A circular cylinder.
+    Cylinder {
+        /// A point of its axis, mm.
+        point: [f64; 3],
+        /// The unit vector along its axis.
+        axis: [f64; 3],
+        /// Radius, mm.
+        radius: f64,
+    },
+    /// A circular cone.
+    Cone {
+        /// A point of its axis, mm.
+        point: [f64; 3],
+        /// The unit vector along its axis.
+        axis: [f64; 3],
+        /// Radius at the point, mm.
+        radius: f64,
+        /// How much the radius grows per length along the axis.
+        slope: f64,
+    },
     /// A sphere.
-    Sphere { point: [f64; 3], radius: f64 },
+    Sphere {
+        /// Its centre, mm.
+        point: [f64; 3],
+        /// Radius, mm.
+        radius: f64,
+    },
 }
 
 impl Primitive {
     /// From the surface to a place, along the normal there: positive outside.
-    pub fn distance(&self, place: [f64; 3]) -> f64 {
+    pub(crate) fn distance(&self, place: [f64; 3]) -> f64 {
         self.parts(place).0
     }
 
     /// The point of the surface next to a place.
-    pub fn project<T: Scalar>(&self, place: [T; 3]) -> [T; 3] {
+    pub(crate) fn project<T: Scalar>(&self, place: [T; 3]) -> [T; 3] {
         let (distance, normal) = self.parts(place);
         std::array::from_fn(|axis| place[axis] - distance * normal[axis])
     }
 
-    /// Signed distance and unit normal.
-    fn parts<T: Scalar>(&self, place: [T; 3]) -> (T, [T; 3]) {
+    /// Signed distance, positive outside, and unit normal.
+    pub(crate) fn parts<T: Scalar>(&self, place: [T; 3]) -> (T, [T; 3]) {
         let lifted = |vector: [f64; 3]| vector.map(T::constant);
         let from = |point: [f64; 3]| -> [T; 3] { std::array::from_fn(|axis| place[axis] - T::constant(point[axis])) };
         let across = |point: [f64; 3], axis: [f64; 3]| {

@@ -3,7 +3,7 @@
 use super::{fit, quadric, smooth_parts};
 use crate::body::mesh::{CellFace, Mesh, narrow};
 use crate::error::SceneError;
-use crate::mortar::vector::{length, plus};
+use crate::mortar::vector::{dot, length, plus};
 use crate::mortar::{Facet, NO_MIDDLE, Primitive, QuadraticFacet, Remainder};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -42,28 +42,50 @@ pub(crate) struct CurvedFace {
     pub residuals: Vec<f64>,
     /// Whether any middle lies off its chord.
     pub is_curved: bool,
+    /// Its smooth parts.
+    pub parts: Vec<SmoothPart>,
+}
+
+/// Facets that meet at 30° at most.
+#[derive(Debug, Clone)]
+pub(crate) struct SmoothPart {
+    /// The numbers of its facets.
+    pub facets: Vec<usize>,
+    /// The surface that all its nodes lie on, with 1 where its outside is that of the facets, else −1.
+    pub primitive: Option<(Primitive, f64)>,
+    /// The unit normals of corners by quadrics through the nodes around; none with a primitive.
+    pub normals: HashMap<u32, [f64; 3]>,
 }
 
 /// A smooth part of a face under work.
 struct Part<'a> {
-    mesh: &'a Mesh,
+    places: &'a [[f64; 3]],
     /// Its facets with all nodes of the mesh on them.
     facets: Vec<(usize, Facet, Vec<u32>)>,
     normals: Vec<[f64; 3]>,
 }
 
 impl CurvedFace {
-    /// Finds the middles of all edges of a face; `name` stands in messages.
+    /// Finds the middles of all edges of a face of a body; `name` stands in messages.
+    ///
+    /// # Errors
+    /// As [`of_facets`](Self::of_facets).
+    pub(crate) fn new(name: &str, mesh: &Mesh, faces: &[CellFace]) -> Result<Self, SceneError> {
+        Self::of_facets(name, mesh.nodes(), faces.iter().map(|face| mesh.face_with_corners(*face)))
+    }
+
+    /// Finds the middles of all edges of facets, each given by its nodes, corners first, and the number of its corners.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for a middle node of the file so far from its edge that the facet folds.
-    pub(crate) fn new(name: &str, mesh: &Mesh, faces: &[CellFace]) -> Result<Self, SceneError> {
-        let given = faces.iter().filter_map(|face| {
-            let (nodes, corners) = mesh.face_with_corners(*face);
-            Some((Facet::new(&nodes[..corners])?, nodes))
-        });
+    pub(crate) fn of_facets(
+        name: &str,
+        places: &[[f64; 3]],
+        facets: impl IntoIterator<Item = (Vec<u32>, usize)>,
+    ) -> Result<Self, SceneError> {
+        let given = facets.into_iter().filter_map(|(nodes, corners)| Some((Facet::new(&nodes[..corners])?, nodes)));
         let (facets, nodes): (Vec<Facet>, Vec<Vec<u32>>) = given.unzip();
-        let x = |node: u32| mesh.nodes()[node as usize];
+        let x = |node: u32| places[node as usize];
         let normal = |facet: &Facet| {
             smooth_parts::normal(&facet.corners().iter().map(|&node| x(node)).collect::<Vec<[f64; 3]>>())
         };
@@ -75,12 +97,13 @@ impl CurvedFace {
             points: Vec::new(),
             residuals: vec![0.0; facets.len()],
             is_curved: false,
+            parts: Vec::with_capacity(count),
             facets,
         };
         for part in 0..count {
             let own: Vec<usize> = (0..this.facets.len()).filter(|&facet| part_of[facet] == part).collect();
             let facets = own.iter().map(|&facet| (facet, this.facets[facet], nodes[facet].clone())).collect();
-            let part = Part { mesh, facets, normals: own.iter().map(|&facet| normals[facet]).collect() };
+            let part = Part { places, facets, normals: own.iter().map(|&facet| normals[facet]).collect() };
             part.check_middles(name)?;
             this.add(&part, &mut quadratic_facets);
         }
@@ -97,8 +120,8 @@ impl CurvedFace {
     }
 
     fn add(&mut self, part: &Part<'_>, quadratic_facets: &mut [Option<QuadraticFacet>]) {
-        let x = |node: u32| part.mesh.nodes()[node as usize];
-        let first = narrow(part.mesh.node_count());
+        let x = |node: u32| part.places[node as usize];
+        let first = narrow(part.places.len());
         let curved_edges = part.curved_edges();
         let mut points: BTreeSet<u32> = part.corners().collect();
         points.extend(curved_edges.iter().flat_map(|edges| edges.values().copied()));
@@ -149,6 +172,14 @@ impl CurvedFace {
             let remainder = primitive.filter(|_| !is_plane).map(|primitive| Remainder { primitive, start });
             quadratic_facets[*facet] = Some(QuadraticFacet { middles, remainder });
         }
+        let normals = fits.into_iter().map(|(node, fit)| (node, fit.normal)).collect();
+        let along = |(facet, normal): (&(usize, Facet, Vec<u32>), &[f64; 3])| {
+            primitive.map_or(0.0, |primitive| dot(primitive.parts(x(facet.1.corners()[0])).1, *normal))
+        };
+        let sum: f64 = part.facets.iter().zip(&part.normals).map(along).sum();
+        let facets = part.facets.iter().map(|(facet, ..)| *facet).collect();
+        let primitive = primitive.map(|primitive| (primitive, if sum < 0.0 { -1.0 } else { 1.0 }));
+        self.parts.push(SmoothPart { facets, primitive, normals });
     }
 }
 
@@ -166,7 +197,7 @@ impl Part<'_> {
     /// Refuses middle nodes of the file so far from their edges that facets fold.
     fn check_middles(&self, name: &str) -> Result<(), SceneError> {
         let Some(edges) = self.curved_edges() else { return Ok(()) };
-        let x = |node: u32| self.mesh.nodes()[node as usize];
+        let x = |node: u32| self.places[node as usize];
         for (edge, middle) in edges {
             let [a, b] = edge.map(x);
             let share = length(arm([a, b], x(middle))) / length(plus(b, -1.0, a));
@@ -187,13 +218,13 @@ impl Part<'_> {
             let middles = &nodes[facet.corners().len()..];
             smooth_parts::edges(facet).zip(middles).for_each(|(edge, &middle)| _ = edges.insert(edge, middle));
         }
-        let x = |node: u32| self.mesh.nodes()[node as usize];
+        let x = |node: u32| self.places[node as usize];
         edges.iter().any(|(edge, &middle)| is_off(edge.map(x), x(middle))).then_some(edges)
     }
 
     /// The normals of all corners by quadrics over two rings of facets.
     fn fitted_normals(&self) -> HashMap<u32, quadric::FittedNormal> {
-        let x = |node: u32| self.mesh.nodes()[node as usize];
+        let x = |node: u32| self.places[node as usize];
         let mut around: BTreeMap<u32, (BTreeSet<u32>, [f64; 3])> = BTreeMap::new();
         for ((_, facet, _), normal) in self.facets.iter().zip(&self.normals) {
             for &corner in facet.corners() {

@@ -8,6 +8,9 @@
 mod curved_face;
 mod fit;
 mod quadric;
+mod recognition;
 mod smooth_parts;
 
+pub use crate::mortar::Primitive;
 pub(crate) use curved_face::{CurvedFace, MiddlePoint};
+pub use recognition::{FacePart, face_parts};

@@ -2,6 +2,8 @@
 
 use crate::error::SceneError;
 use crate::scene::HeightGrid;
+use crate::scene::mesh_surface::MeshSurface;
+use crate::scene::revolution::{Meridian, Revolution};
 use serde::{Deserialize, Serialize};
 
 /// Analytic surfaces of the paper, a plane, indenters with known solutions, and heights on a grid.
@@ -64,17 +66,10 @@ pub enum CounterSurface {
         /// Where the body is.
         side: Side,
     },
-    /// A circular cylinder anywhere in space, without ends; an obstacle only.
-    Cylinder {
-        /// A point of its axis, mm.
-        point: [f64; 3],
-        /// The direction of its axis, of any length.
-        axis: [f64; 3],
-        /// Radius, mm.
-        radius: f64,
-        /// Where the body is.
-        side: Side,
-    },
+    /// A surface of revolution anywhere in space; an obstacle only.
+    Revolution(Revolution),
+    /// A face of a mesh anywhere in space; an obstacle only.
+    Mesh(MeshSurface),
 }
 
 /// On which side of a closed surface the body is.
@@ -96,6 +91,12 @@ fn rise(radius: f64, place: [f64; 2]) -> f64 {
 }
 
 impl CounterSurface {
+    /// A circular cylinder anywhere in space, without ends: a point of its axis (mm), the direction of its axis, its
+    /// radius (mm), and where the body is. An obstacle only.
+    pub fn cylinder(point: [f64; 3], axis: [f64; 3], radius: f64, side: Side) -> Self {
+        Self::Revolution(Revolution { point, axis, side, meridian: Meridian::Line { radius, slope: 0.0 } })
+    }
+
     /// Refuses numbers that make no surface; `field` stands in messages.
     ///
     /// # Errors
@@ -118,8 +119,8 @@ impl CounterSurface {
         match self {
             Self::TiltedPlane { point, normal } => finite("point", point).and(direction("normal", normal)),
             Self::Ball { centre, radius: r, .. } => finite("centre", centre).and(radius(*r)),
-            Self::Cylinder { point, axis, radius: r, .. } => {
-                finite("point", point).and(direction("axis", axis)).and(radius(*r))
+            Self::Revolution(surface) => {
+                finite("point", &surface.point).and(direction("axis", &surface.axis)).and(surface.check(field))
             }
             Self::Sphere { radius: r, .. } => radius(*r),
             _ => Ok(()),
@@ -138,16 +139,17 @@ impl CounterSurface {
             Self::Punch { height, centre, .. } => (*height, *centre) = (*height + by[2], *centre + by[0]),
             Self::Plane { height } => *height += by[2],
             Self::Grid(grid) => *grid = grid.moved(by),
-            Self::TiltedPlane { point: x, .. } | Self::Ball { centre: x, .. } | Self::Cylinder { point: x, .. } => {
-                *x = point(*x);
-            }
+            Self::TiltedPlane { point: x, .. }
+            | Self::Ball { centre: x, .. }
+            | Self::Revolution(Revolution { point: x, .. }) => *x = point(*x),
+            Self::Mesh(surface) => *surface = surface.moved(by),
         }
         moved
     }
 
     /// Whether it is a height over (x₁, x₂).
     pub fn has_heights(&self) -> bool {
-        !matches!(self, Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. })
+        !matches!(self, Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Revolution(_) | Self::Mesh(_))
     }
 
     /// Height at (x₁, x₂), mm; NaN outside a sphere, and where the surface is no height over (x₁, x₂).
@@ -164,7 +166,7 @@ impl CounterSurface {
             }
             &Self::Plane { height } => height,
             Self::Grid(grid) => grid.height(x1, x2),
-            Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Cylinder { .. } => f64::NAN,
+            Self::TiltedPlane { .. } | Self::Ball { .. } | Self::Revolution(_) | Self::Mesh(_) => f64::NAN,
         }
     }
 }

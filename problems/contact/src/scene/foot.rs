@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! exact distance:  n from the body into the obstacle,  gap = n·(foot − x),   gap′ = −n·x′
-//! plane n′ = 0;   sphere n′ = −s (I − nnᵀ) x′/|c − x|;   cylinder: the same across the axis
+//! plane n′ = 0;   sphere n′ = −s (I − nnᵀ) x′/|c − x|;   signed distance d:  n = −s ∇d,  gap = s d,  n′ = −s ∇²d x′
 //! heights g:  (y − x) + (g(y) − x₃) ∇g(y) = 0,  n = (−∇g, 1)/√(1 + |∇g|²),  H = I + ∇g∇gᵀ + (g − x₃) G
 //!             H y′ = x₁₂′ + ∇g x₃′,   n′ = (I − nnᵀ)(−G y′, 0)/√(1 + |∇g|²)
 //! along x₃:   n = e₃,  gap = g(x₁, x₂) − x₃
@@ -50,17 +50,8 @@ impl CounterSurface {
                 Ok(flat(normal, dot(subtract(point, x), normal)))
             }
             Self::Ball { centre, radius, side } => round(subtract(centre, x), radius, side),
-            Self::Cylinder { point, axis, radius, side } => {
-                let axis = scaled(axis, 1.0 / length(axis));
-                let to = subtract(point, x);
-                let mut foot = round(subtract(to, scaled(axis, dot(to, axis))), radius, side)?;
-                // Along the axis the normal does not change.
-                for row in &mut foot.normal_slope {
-                    let along: f64 = dot(*row, axis);
-                    (0..3).for_each(|j| row[j] -= along * axis[j]);
-                }
-                Ok(foot)
-            }
+            Self::Revolution(ref surface) => surface.foot(x),
+            Self::Mesh(ref surface) => surface.foot(x),
             Self::Waves { .. } | Self::Grid(_) => self.height_foot(x),
             Self::Punch { .. } => Err("the surface has a step, where it has no normal"),
         }
@@ -144,6 +135,20 @@ impl CounterSurface {
     }
 }
 
+impl Foot {
+    /// From the signed distance of a surface, positive outside: its value, its gradient, which is a unit vector, and its
+    /// second derivatives.
+    pub(super) fn of_distance(value: f64, gradient: [f64; 3], second: [[f64; 3]; 3], side: Side) -> Self {
+        let sign = if side == Side::Outside { 1.0 } else { -1.0 };
+        Self {
+            normal: scaled(gradient, -sign),
+            gap: sign * value,
+            gap_slope: scaled(gradient, sign),
+            normal_slope: second.map(|row| scaled(row, -sign)),
+        }
+    }
+}
+
 /// H of a jet and the rise g − x₃.
 fn hessian(jet: &Jet, rise: f64) -> [[f64; 2]; 2] {
     let (p, g) = (jet.slopes, jet.second);
@@ -160,7 +165,7 @@ fn flat(normal: [f64; 3], gap: f64) -> Foot {
     Foot { normal, gap, gap_slope: normal.map(|n| -n), normal_slope: [[0.0; 3]; 3] }
 }
 
-/// The foot on a sphere or cylinder, from the way v to the centre or to the axis.
+/// The foot on a sphere, from the way v to the centre.
 fn round(v: [f64; 3], radius: f64, side: Side) -> Result<Foot, &'static str> {
     let distance = length(v);
     if distance <= f64::EPSILON * radius {

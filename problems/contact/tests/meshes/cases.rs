@@ -3,7 +3,7 @@
 use crate::grid::{Point, boxed, mesh};
 use crate::setting::{held, pushed, scene};
 use contact::body::mesh::CellKind;
-use contact::scene::{CounterSurface, Scene, Side};
+use contact::scene::{CounterSurface, Meridian, MeshSurface, Profile, Revolution, Scene, Side};
 use nonsmooth::Vector;
 use nonsmooth::verify::seeded_direction;
 
@@ -18,17 +18,38 @@ pub fn obstacles() -> Vec<(&'static str, CounterSurface)> {
         ("plane", CounterSurface::TiltedPlane { point: [5.0, 4.0, top], normal: [0.03, -0.05, 1.0] }),
         ("ball", CounterSurface::Ball { centre: [4.2, 4.5, top + 60.0], radius: 60.0, side: Side::Outside }),
         ("socket", CounterSurface::Ball { centre: [5.2, 3.5, top + 0.3 - 50.0], radius: 50.0, side: Side::Inside }),
-        (
-            "cylinder",
-            CounterSurface::Cylinder {
-                point: [5.0, 4.4, top + 40.0],
-                axis: [1.0, 0.4, 0.03],
-                radius: 40.0,
-                side: Side::Outside,
-            },
-        ),
+        ("cylinder", CounterSurface::cylinder([5.0, 4.4, top + 40.0], [1.0, 0.4, 0.03], 40.0, Side::Outside)),
+        ("torus", CounterSurface::Revolution(torus(top))),
+        ("profile", CounterSurface::Revolution(Revolution { meridian: profile(), ..torus(top) })),
+        ("mesh", CounterSurface::Mesh(wavy_mesh(top))),
         ("waves", CounterSurface::Waves { base: top + 0.1, first: 0.08, second: 0.1, period: 13.0, origin: [0.0; 2] }),
     ]
+}
+
+/// A ring that stands obliquely on the block.
+fn torus(top: f64) -> Revolution {
+    let meridian = Meridian::Circle { major_radius: 25.0, minor_radius: 30.0 };
+    Revolution { point: [4.6, 4.2, top + 55.0], axis: [1.0, 0.3, 0.05], side: Side::Outside, meridian }
+}
+
+/// A crowned roll with a shoulder.
+fn profile() -> Meridian {
+    let points = (0..13).map(|k| f64::from(k) - 6.0).map(|z| [55.0 - 0.02 * z * z - 0.002 * z * z * z, z]);
+    Meridian::Profile(Profile::new(points.collect()).expect("a profile"))
+}
+
+/// Waves above the block between curved facets that look down.
+fn wavy_mesh(top: f64) -> MeshSurface {
+    let (count, step) = (9_u32, 2.3);
+    let place = |i: u32, j: u32| {
+        let (x, y) = (step * f64::from(i) - 5.0, step * f64::from(j) - 5.0);
+        [x, y, top + 0.1 + 0.08 * (0.5 * x).sin() + 0.1 * (0.4 * y).cos()]
+    };
+    let nodes = (0..=count).flat_map(|i| (0..=count).map(move |j| place(i, j)));
+    let number = |i: u32, j: u32| i * (count + 1) + j;
+    let corners = |i: u32, j: u32| vec![number(i, j), number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)];
+    let facets = (0..count).flat_map(|i| (0..count).map(move |j| corners(i, j)));
+    MeshSurface::new("mesh", nodes.collect(), facets.collect(), Side::Outside).expect("a surface")
 }
 
 /// A distorted block pressed and pushed from below, held along its near side: nodes of that side have cut rows.

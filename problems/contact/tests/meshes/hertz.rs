@@ -52,7 +52,7 @@ fn under_cylinder(kind: CellKind, cells: usize, depth: f64) -> Scene {
     let map = |[s, t, r]: Point| turn.of([SIDE * graded(s), WIDTH * t, SIDE * (1.0 - graded(1.0 - r))]);
     let point = turn.of([0.0, 7.0, SIDE + RADIUS - depth]);
     let axis = turn.of([0.0, 3.0, 0.0]);
-    let cylinder = CounterSurface::Cylinder { point, axis, radius: RADIUS, side: Side::Outside };
+    let cylinder = CounterSurface::cylinder(point, axis, RADIUS, Side::Outside);
     let mut scene = scene(mesh(kind, [cells, 1, cells], 0.0, map), cylinder, 0.0);
     scene.bodies[0].supports = along_normals(&["x1-min", "x2-min", "x2-max", "bottom"]);
     scene

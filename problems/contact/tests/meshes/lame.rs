@@ -56,9 +56,7 @@ fn mesh_of(body: Body, kind: CellKind, cells: usize, curves: bool) -> Mesh {
 
 fn inflated(body: Body, kind: CellKind, cells: usize, curves: bool) -> Scene {
     let wall = match body {
-        Body::Tube => {
-            CounterSurface::Cylinder { point: [0.0; 3], axis: [0.0, 2.0, 0.0], radius: OUTER, side: Side::Inside }
-        }
+        Body::Tube => CounterSurface::cylinder([0.0; 3], [0.0, 2.0, 0.0], OUTER, Side::Inside),
         Body::Ball => CounterSurface::Ball { centre: [0.0; 3], radius: OUTER, side: Side::Inside },
     };
     let mut scene = scene(mesh_of(body, kind, cells, curves), wall, 0.3);

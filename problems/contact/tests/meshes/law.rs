@@ -6,7 +6,7 @@ use crate::grid::Point;
 use crate::setting::mesh_of;
 use contact::contact_shape::{ContactShape, ContactState};
 use contact::equilibrium::ContactStatus;
-use contact::scene::{CounterSurface, Held, LoadKind, Scene, Side};
+use contact::scene::{CounterSurface, Held, LoadKind, Meridian, Revolution, Scene, Side};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
@@ -42,7 +42,7 @@ fn level(obstacle: &CounterSurface, y: Point) -> (f64, Point) {
             let way = plus(centre, -1.0, y);
             (inside(side) * (radius * radius - dot(way, way)), way.map(|x| 2.0 * inside(side) * x))
         }
-        CounterSurface::Cylinder { point, axis, radius, side } => {
+        CounterSurface::Revolution(Revolution { point, axis, side, meridian: Meridian::Line { radius, .. } }) => {
             let across = cross(plus(y, -1.0, point), axis);
             let slope = cross(across, axis).map(|x| 2.0 * inside(side) * x);
             (inside(side) * (radius * radius * dot(axis, axis) - dot(across, across)), slope)

@@ -34,8 +34,7 @@ fn pressed(kind: CellKind, cells: usize, traction: f64) -> Scene {
     let turn = Rotation::about(ANGLE);
     let map = |[s, t, r]: Point| turn.of([SIDE * graded(2.0 * s - 1.0), WIDTH * t, SIDE * (1.0 - graded(1.0 - r))]);
     let point = turn.of([0.0, 0.0, SIDE + RADIUS - 0.012]);
-    let cylinder =
-        CounterSurface::Cylinder { point, axis: turn.of([0.0, 1.0, 0.0]), radius: RADIUS, side: Side::Outside };
+    let cylinder = CounterSurface::cylinder(point, turn.of([0.0, 1.0, 0.0]), RADIUS, Side::Outside);
     let mut scene = scene(mesh(kind, [2 * cells, 1, cells], 0.0, map), cylinder, FRICTION);
     scene.bodies[0].material = material([1000.0, 0.499]).with_formulation(Formulation::MeanDilatation);
     let along_normal = |face: &str| Support { face: face.to_owned(), held: Held::Normal(0.0) };

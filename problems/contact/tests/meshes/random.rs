@@ -46,7 +46,7 @@ fn obstacle(form: usize, place: Point, [a, b]: [f64; 2], radius: f64) -> Counter
         3 => {
             // An axis across the normal.
             let (point, axis) = (along(radius - OVERLAP), cross(normal, [-0.4, 1.0, 0.1]));
-            CounterSurface::Cylinder { point, axis, radius, side: Side::Outside }
+            CounterSurface::cylinder(point, axis, radius, Side::Outside)
         }
         _ => CounterSurface::Waves { base: place[2] - OVERLAP, first: a, second: b, period: 17.0, origin: [0.0; 2] },
     }

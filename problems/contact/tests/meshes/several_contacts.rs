@@ -61,9 +61,7 @@ fn obstacle(random: &mut Random, place: Point, normal: Point) -> CounterSurface 
     match random.below(4) {
         0 => CounterSurface::Ball { centre: along(gap + radius), radius, side: Side::Outside },
         1 => CounterSurface::Ball { centre: along(gap - radius), radius, side: Side::Inside },
-        2 => {
-            CounterSurface::Cylinder { point: along(gap + radius), axis: [0.0, 1.0, 0.0], radius, side: Side::Outside }
-        }
+        2 => CounterSurface::cylinder(along(gap + radius), [0.0, 1.0, 0.0], radius, Side::Outside),
         _ => CounterSurface::TiltedPlane { point: along(gap), normal },
     }
 }

@@ -40,5 +40,5 @@ pub use elements::{CellKind, FacetKind};
 pub use error::{GmshError, Place};
 pub use merge::Repeated;
 pub use mesh::{GmshCell, GmshFacet, GmshMesh, NodeData};
-pub use read::read;
+pub use read::{read, read_surfaces};
 pub use write::{write, write_with_data};

@@ -15,13 +15,28 @@ use std::collections::{HashMap, HashSet};
 /// a file that is damaged or contradicts itself, a second mesh that differs from the first one, a mesh without volume
 /// elements, and elements of physical groups on nodes that no volume element uses.
 pub fn read(bytes: &[u8]) -> Result<GmshMesh, GmshError> {
+    read_elements(bytes, false)
+}
+
+/// Reads a mesh that may consist of surface elements alone; its nodes are theirs then.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_surfaces(bytes: &[u8]) -> Result<GmshMesh, GmshError> {
+    read_elements(bytes, true)
+}
+
+fn read_elements(bytes: &[u8], may_be_surface: bool) -> Result<GmshMesh, GmshError> {
     let mut source = Source::new(bytes);
     first_line(&mut source)?;
     let mut mesh = None;
     loop {
         let Part { contents, has_mesh, is_followed } = part(&mut source)?;
         if has_mesh {
-            let used = used_nodes(&contents)?;
+            let mut used = used_nodes(&contents, |kind| matches!(kind, ElementKind::Cell(_)))?;
+            if used.is_empty() && may_be_surface {
+                used = used_nodes(&contents, |kind| matches!(kind, ElementKind::Facet(_)))?;
+            }
             if used.is_empty() {
                 return Err(GmshError::Missing { place: source.place(), what: "volume elements (hex8, tet4, tet10)" });
             }
@@ -42,15 +57,15 @@ pub fn read(bytes: &[u8]) -> Result<GmshMesh, GmshError> {
     }
 }
 
-/// Tags of the nodes that volume elements use. All elements must be on nodes of the file.
-fn used_nodes(contents: &Contents) -> Result<HashSet<u64>, GmshError> {
+/// Tags of the nodes that some kinds of elements use. All elements must be on nodes of the file.
+fn used_nodes(contents: &Contents, counts: impl Fn(ElementKind) -> bool) -> Result<HashSet<u64>, GmshError> {
     let mut used = HashSet::new();
     for block in &contents.blocks {
         for (element, nodes) in &block.elements {
             if let Some(&node) = nodes.iter().find(|node| !contents.known_nodes.contains(node)) {
                 return Err(GmshError::UnknownNode { element: *element, node });
             }
-            if matches!(block.kind, ElementKind::Cell(_)) {
+            if counts(block.kind) {
                 used.extend(nodes);
             }
         }
