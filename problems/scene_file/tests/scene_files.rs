@@ -431,6 +431,7 @@ fn a_draft_knows_faces_around_the_body_units_and_missing_names() {
         let (text, preview) = drafted(&ring(contact)).unwrap();
         assert!(text.contains("form = \"cylinder\"") && text.contains("axis = [0.0, 1.0, 0.0]"), "{text}");
         assert!(text.contains(radius) && text.contains(&format!("side = \"{side}\"")), "{text}");
+        assert!(text.contains("control_points = [1, 1, 4]") && text.contains("# load: "), "{text}");
         assert!(preview.gaps.iter().all(|gap| gap.abs() < 1e-9) && preview.contact_nodes == 48, "{preview:?}");
     }
     let mut small = ring("bore");
@@ -442,4 +443,85 @@ fn a_draft_knows_faces_around_the_body_units_and_missing_names() {
     nameless.facets.clear();
     let error = drafted(&nameless).unwrap_err();
     assert!(error.contains("ring.msh: named faces = []") && error.contains("addPhysicalGroup(2"), "{error}");
+}
+
+/// A block of hexahedra over the unit cube with a name per face: x1 = 0, 1, x2 = 0, 1, x3 = 0, 1.
+fn named_block(names: [&str; 6], place: impl Fn([f64; 3]) -> [f64; 3]) -> GmshMesh {
+    const COUNT: usize = 6;
+    let number = |[i, j, k]: [usize; 3]| (i * (COUNT + 1) + j) * (COUNT + 1) + k;
+    let all =
+        |count: usize| (0..count).flat_map(move |i| (0..count).flat_map(move |j| (0..count).map(move |k| [i, j, k])));
+    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    let cell = |at: [usize; 3]| corners.map(|by: [usize; 3]| number(std::array::from_fn(|axis| at[axis] + by[axis])));
+    let cells = all(COUNT).enumerate().map(|(index, at)| GmshCell {
+        kind: CellKind::Hex8,
+        nodes: cell(at).to_vec(),
+        tag: index as u64 + 1,
+    });
+    let mut mesh = GmshMesh {
+        nodes: all(COUNT + 1).map(|at| place(at.map(|index| index as f64 / COUNT as f64))).collect(),
+        node_tags: (1..=(COUNT as u64 + 1).pow(3)).collect(),
+        cells: cells.collect(),
+        ..GmshMesh::default()
+    };
+    for (face, name) in names.iter().enumerate() {
+        let (axis, level) = (face / 2, face % 2 * COUNT);
+        let first = mesh.facets.len();
+        for (s, t) in (0..COUNT).flat_map(|s| (0..COUNT).map(move |t| (s, t))) {
+            let at = |s: usize, t: usize| {
+                let mut at = [level; 3];
+                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (s, t);
+                number(at)
+            };
+            let nodes = vec![at(s, t), at(s + 1, t), at(s + 1, t + 1), at(s, t + 1)];
+            let tag = (mesh.cells.len() + mesh.facets.len() + 1) as u64;
+            mesh.facets.push(GmshFacet { kind: FacetKind::Quad4, nodes, tag });
+        }
+        mesh.surfaces.insert((*name).into(), (first..mesh.facets.len()).collect());
+    }
+    mesh
+}
+
+/// Two flanks get a contact each, a seat the ball on its side, and the load stays within the plane of symmetry; what no
+/// name tells is asked.
+#[test]
+fn a_draft_knows_forms_and_asks_what_it_cannot_know() {
+    let folder = kit::scratch();
+    let drafted = |mesh: &GmshMesh| {
+        let file = folder.path().join("part.msh");
+        std::fs::write(&file, gmsh::write(mesh, true).unwrap()).unwrap();
+        scene_file::draft(&file).unwrap()
+    };
+    let preview = |text: &str| {
+        let case = Case::new(&SceneFile::parse(text, "draft").unwrap(), folder.path()).unwrap();
+        ContactProblem::new(case.scene).unwrap().preview()
+    };
+    let open = |text: &str| {
+        let words = |line: &String| line.split(": ").nth(1).unwrap_or_default().to_owned();
+        scene_file::open_questions(text).iter().map(words).collect::<Vec<_>>()
+    };
+    // A tongue that is wider below: its flanks look up and outwards, and a force on top would pull at it.
+    let tongue = |[x, y, z]: [f64; 3]| [(24.0 - 10.0 * z) * (x - 0.5), 30.0 * y, 8.0 * z];
+    let text = drafted(&named_block(["flank left", "flank right", "front", "back", "bottom", "top"], tongue));
+    assert_eq!(text.matches("[contact.obstacle]\n").count(), 2, "{text}");
+    assert!(text.contains("face = \"bottom\", force = [0.0, 0.0, ") && text.contains("would pull at it"), "{text}");
+    assert!(text.contains("region = [\"flank left\", \"flank right\"]"), "{text}");
+    assert_eq!(open(&text), ["support", "load"], "{text}");
+    assert!(preview(&text).gaps.iter().all(|gap| gap.abs() < 1e-9));
+    // Half of a block on a ball below: the seat is hollow, and its mean normal crosses the plane of symmetry.
+    let seat = |[x, y, z]: [f64; 3]| {
+        let [x, y] = [10.0 * x, 16.0 * (y - 0.5)];
+        let low = (400.0 - x * x - y * y).sqrt() - 20.0;
+        [x, y, low + (15.0 - low) * z]
+    };
+    let text = drafted(&named_block(["symmetry", "side", "front", "back", "seat", "load"], seat));
+    assert!(text.contains("form = \"ball\"\ncentre = [0.0, 0.0, -20.0]\nradius = 20.0\nside = \"outside\""), "{text}");
+    assert!(text.contains("loads = [{ face = \"load\", force = [0.0, 0.0, -"), "{text}");
+    assert_eq!(open(&text), ["support"], "{text}");
+    assert!(preview(&text).gaps.iter().all(|gap| gap.abs() < 1e-9));
+    // Names that say nothing.
+    let text = drafted(&named_block(["a", "b", "c", "d", "e", "f"], |x| x.map(|x| 20.0 * x)));
+    assert_eq!(open(&text), ["support", "load", "shape", "contact"], "{text}");
+    let error = SceneFile::parse(&text, "part.toml").unwrap_err().to_string();
+    assert!(error.contains("contact is missing") && error.contains("leaves open: contact: no name says"), "{error}");
 }

@@ -161,6 +161,7 @@ pub fn execute_among(
 
 /// Says on stderr what was found in the files of a scene, and what memory it takes, before any work.
 fn tell_of_files(loaded: &LoadedScene) {
+    loaded.open.iter().for_each(|open| notice(open));
     let notes = &loaded.case.notes;
     notes.iter().for_each(|note| notice(note));
     if !notes.is_empty() {

@@ -17,6 +17,8 @@ pub struct LoadedScene {
     path: Option<PathBuf>,
     /// The scene and the settings of a run.
     pub case: Case,
+    /// What the text of the file leaves open.
+    pub open: Vec<String>,
 }
 
 impl LoadedScene {
@@ -29,7 +31,8 @@ impl LoadedScene {
             Some(path) => SceneError::InFile { file: path.display().to_string(), source: Box::new(error) },
             None => error,
         })?;
-        Ok(Self { file, path, case })
+        let open = path.as_deref().map(SceneFile::open_questions).transpose()?.unwrap_or_default();
+        Ok(Self { file, path, case, open })
     }
 
     /// A copy of the scene with changed fields.

@@ -40,7 +40,7 @@ fn next(binary: &str, scene: &Path) -> String {
     let stem = scene.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let folder = quoted(format!("results/{stem}_look"));
     format!(
-        "{path}: a first scene, from the names in the mesh; its comments say what was guessed\n\
+        "{path}: a first scene, from the names and forms of the faces; its comments say why, and what it leaves open\n\
          next: {binary} {path} look --out {folder}\n"
     )
 }

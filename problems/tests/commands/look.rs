@@ -27,8 +27,9 @@ fn a_mesh_becomes_a_scene_that_is_solved_and_optimized() {
         assert!(
             roles("nose").contains("on the obstacle, friction 0.15") && roles("wall").contains("held: u₁ = u₂ = 0")
         );
-        assert!(roles("hole").contains("load (0, 0, −26000) N\"") && roles("side") == "[]", "{}", seen["bodies"]);
+        assert!(roles("top").contains("load (0, 0, −26000) N\"") && roles("side") == "[]", "{}", seen["bodies"]);
         assert_eq!(seen["hints"].as_array().unwrap().len(), 0, "{}", seen["hints"]);
+        assert_eq!(seen["open"], serde_json::json!([]));
         // The load of the draft, and nothing else, is carried by the obstacle.
         let state = json(CONTACT, &[text(&scene), "evaluate", "--no-checks", "--json"]);
         assert!((state["total_normal_force"].as_f64().unwrap() / 26_000.0 - 1.0).abs() < 1e-3, "{state}");

@@ -31,6 +31,8 @@ const SPACE: &str = "What acts on the faces, and the gaps of the nodes that may 
 /// A scene at a shape, in all load cases.
 struct Look<'a> {
     case: &'a Case,
+    /// What the scene file leaves open.
+    open: &'a [String],
     cases: Vec<LookedCase<'a>>,
 }
 
@@ -52,10 +54,14 @@ pub fn setup(cases: &[(&str, &ContactProblem)], controls: &[f64]) -> Result<Vec<
 
 impl<'a> Look<'a> {
     /// The scene of a case at the shape of some controls.
-    fn new(case: &'a Case, problems: &'a [ContactProblem], controls: &[f64]) -> Result<Self, Failure> {
+    fn new(
+        (case, open): (&'a Case, &'a [String]),
+        problems: &'a [ContactProblem],
+        controls: &[f64],
+    ) -> Result<Self, Failure> {
         let cases = case.cases.iter().zip(problems);
         let cases = cases.map(|(own, problem)| LookedCase::new(&own.name, problem, controls));
-        Ok(Self { case, cases: cases.collect::<Result<_, _>>()? })
+        Ok(Self { case, open, cases: cases.collect::<Result<_, _>>()? })
     }
 
     fn scene(&self) -> &Scene {
@@ -80,8 +86,10 @@ impl<'a> Look<'a> {
         before.push(Fact::json("cases", &list)?);
         before.push(Fact::json("memory", &needed)?);
         let hints = by_case(&self.cases, hints);
+        let missing = self.open.iter().map(|open| Fact::new("", "missing", open.clone(), ""));
         let notes = hints.iter().map(|hint| Fact::new("", "note", hint.clone(), ""));
-        let notes = notes.chain([Fact::json("hints", &hints)?]).collect();
+        let lists = [Fact::json("open", &self.open)?, Fact::json("hints", &hints)?];
+        let notes = missing.chain(notes).chain(lists).collect();
         let groups = vec![
             Group::new("Bodies and faces", face_facts(&self.cases)?),
             Group::new("Load cases", before),
@@ -110,7 +118,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let file = ("--controls", arguments.shape.controls.as_deref());
     let problems = problems(case)?;
     let controls = controls::load(&problems[0], case, file)?;
-    let look = Look::new(case, &problems, controls.as_slice())?;
+    let look = Look::new((case, &loaded.open), &problems, controls.as_slice())?;
     let facts = look.facts()?;
     let object = json(&facts)?;
     let folder = Folder::of_command(&loaded.case, arguments)?;
@@ -134,6 +142,6 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
 /// [`Failure::Input`] for a scene that cannot be computed.
 pub fn page(case: &Case, scene: &str) -> Result<String, Failure> {
     let problems = problems(case)?;
-    let look = Look::new(case, &problems, &case.start_controls())?;
+    let look = Look::new((case, &[]), &problems, &case.start_controls())?;
     Ok(look.page(&look.facts()?, scene)?.html())
 }
