@@ -63,7 +63,7 @@ def draw_sketch(file, stem, head):
     figure, axis = plt.subplots(figsize=(6, 4.6), layout="constrained")
     for mesh, color in ((head, "#d9d9d9"), (stem, "#9ecae1")):
         axis.add_collection(PolyCollection(section(mesh, "side1"), facecolors=color, edgecolors=color))
-    axis.add_collection(LineCollection(section(stem, "taper"), colors=OTHER, linewidths=3))
+    axis.add_collection(LineCollection(section(stem, "taper"), colors=OTHER, linewidths=3, capstyle="projecting"))
     axis.plot([0, 0], [-1, 26], "-.", color="black", linewidth=0.8)
     top = section(head, "top")[:, :, 0].max()
     supports = np.linspace(-top, top, 7)
