@@ -1,7 +1,7 @@
 """The pictures of README.md and of the pages: python docs/pictures/make.py [PICTURE.png ...], by default all of them.
 
 Each picture has an entry below that says what draws it, from which run or file. Runs are made anew, in a folder that is
-deleted at the end; all of them take about ten minutes on two cores.
+deleted at the end; all of them take about ten minutes.
 
 Needs
 
