@@ -51,8 +51,11 @@ def main(picture=None):
 
         figure, axes = plt.subplots(figsize=(6, 2.6))
         best = [record["center_value"] - result.fun for record in result.history]
-        axes.semilogy(range(1, len(best)), best[:-1], "o-", markersize=3)
-        axes.set(xlabel="runs of the simulator", ylabel="best cost above the last")
+        # The last runs confirm the optimum.
+        above = [cost for cost in best if cost > 0]
+        runs = range(1, len(above) + 1)
+        axes.semilogy(runs, above, "o-", markersize=3)
+        axes.set(xticks=runs, xlabel="runs of the simulator", ylabel="best cost above the last")
         figure.tight_layout()
         figure.savefig(picture, dpi=80)
     return result

@@ -5,5 +5,6 @@
 mod architecture;
 mod circles;
 mod methods;
+mod pictures;
 mod published;
 mod references;
