@@ -21,4 +21,4 @@ mod stl;
 pub mod vtk;
 
 pub use error::ExchangeError;
-pub use stl::{Triangle, read_stl, stl};
+pub use stl::{Triangle, Triangulation, read_stl, stl};

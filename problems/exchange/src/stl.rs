@@ -23,12 +23,15 @@ pub fn stl(triangles: &[Triangle]) -> Result<Vec<u8>, ExchangeError> {
     Ok(bytes)
 }
 
+/// Places, and the triangles between them by their numbers.
+pub type Triangulation = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
 /// Places and triangles of an STL file, binary or text: corners that agree in all bits are one place. Triangles are
 /// counterclockwise as seen from outside; the normals of the file are not used.
 ///
 /// # Errors
 /// [`ExchangeError::Stl`] for bytes that are no such file.
-pub fn read_stl(bytes: &[u8]) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), ExchangeError> {
+pub fn read_stl(bytes: &[u8]) -> Result<Triangulation, ExchangeError> {
     let refused = |reason: String| ExchangeError::Stl(reason);
     let mesh = stl_io::read_stl(&mut std::io::Cursor::new(bytes)).map_err(|error| refused(error.to_string()))?;
     let count = mesh.vertices.len();

@@ -34,15 +34,15 @@ pub(crate) fn obstacle(
         &ObstacleSection::Cylinder { point, axis, radius, side } => CounterSurface::cylinder(point, axis, radius, side),
         &ObstacleSection::Cone { point, axis, radius, half_angle, side } => {
             let meridian = Meridian::Line { radius, slope: half_angle.to_radians().tan() };
-            CounterSurface::Revolution(Revolution { point, axis, side, meridian })
+            Revolution { point, axis, side, meridian }.into()
         }
         &ObstacleSection::Torus { centre, axis, major_radius, minor_radius, side } => {
             let meridian = Meridian::Circle { major_radius, minor_radius };
-            CounterSurface::Revolution(Revolution { point: centre, axis, side, meridian })
+            Revolution { point: centre, axis, side, meridian }.into()
         }
         ObstacleSection::Revolution { file, point, axis, side } => {
             let meridian = Meridian::Profile(grid_file::profile(&folder.join(file))?);
-            CounterSurface::Revolution(Revolution { point: *point, axis: *axis, side: *side, meridian })
+            Revolution { point: *point, axis: *axis, side: *side, meridian }.into()
         }
         ObstacleSection::Mesh { file, face, unit, side } => {
             CounterSurface::Mesh(obstacle_mesh::read(field, &folder.join(file), face.as_deref(), *unit, *side)?)

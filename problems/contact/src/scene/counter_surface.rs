@@ -67,7 +67,7 @@ pub enum CounterSurface {
         side: Side,
     },
     /// A surface of revolution anywhere in space; an obstacle only.
-    Revolution(Revolution),
+    Revolution(Box<Revolution>),
     /// A face of a mesh anywhere in space; an obstacle only.
     Mesh(MeshSurface),
 }
@@ -94,7 +94,7 @@ impl CounterSurface {
     /// A circular cylinder anywhere in space, without ends: a point of its axis (mm), the direction of its axis, its
     /// radius (mm), and where the body is. An obstacle only.
     pub fn cylinder(point: [f64; 3], axis: [f64; 3], radius: f64, side: Side) -> Self {
-        Self::Revolution(Revolution { point, axis, side, meridian: Meridian::Line { radius, slope: 0.0 } })
+        Revolution { point, axis, side, meridian: Meridian::Line { radius, slope: 0.0 } }.into()
     }
 
     /// Refuses numbers that make no surface; `field` stands in messages.
@@ -139,9 +139,8 @@ impl CounterSurface {
             Self::Punch { height, centre, .. } => (*height, *centre) = (*height + by[2], *centre + by[0]),
             Self::Plane { height } => *height += by[2],
             Self::Grid(grid) => *grid = grid.moved(by),
-            Self::TiltedPlane { point: x, .. }
-            | Self::Ball { centre: x, .. }
-            | Self::Revolution(Revolution { point: x, .. }) => *x = point(*x),
+            Self::TiltedPlane { point: x, .. } | Self::Ball { centre: x, .. } => *x = point(*x),
+            Self::Revolution(surface) => surface.point = point(surface.point),
             Self::Mesh(surface) => *surface = surface.moved(by),
         }
         moved

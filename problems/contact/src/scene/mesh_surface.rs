@@ -1,7 +1,7 @@
 //! A face of a mesh as a rigid obstacle: feet of points on the curved surface behind its facets.
 //!
 //! ```text
-//! on a plane, cylinder, cone or sphere:  the exact foot.   Elsewhere, on a patch Y(ξ) with the normals m of its corners:
+//! on a plane, cylinder, cone or sphere: the exact foot.  Elsewhere, on a patch Y(ξ) with the normals m of its corners:
 //!     Y(ξ) + g m(ξ) = x,   m = Σ N_k m_k/|Σ N_k m_k|      so that gap and normal are continuous across edges
 //!     [Y_ξ + g m_ξ, Y_η + g m_η, m] (ξ′, g′) = x′,   m′ = m_ξ ξ′
 //! beside the rim of a smooth part:  the nearest point q of its edges,  ∇d = v = (x − q)/|x − q|

@@ -10,6 +10,7 @@
 use crate::error::SceneError;
 use crate::scene::revolution::MeridianDistance;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Cosine of the turn of a polygon from which a point is a corner: 30°.
 const SMOOTH: f64 = 0.866_025_403_784_438_6;
@@ -23,7 +24,10 @@ const STEPS: usize = 60;
 /// Points (ρ, z) of a meridian in their order, mm: from one end to the other, or closed where the last is the first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
-pub struct Profile {
+pub struct Profile(Arc<Curve>);
+
+#[derive(Debug, PartialEq)]
+struct Curve {
     points: Vec<[f64; 2]>,
     pieces: Vec<Piece>,
 }
@@ -57,7 +61,7 @@ impl TryFrom<Vec<[f64; 2]>> for Profile {
 
 impl From<Profile> for Vec<[f64; 2]> {
     fn from(profile: Profile) -> Self {
-        profile.points
+        profile.0.points.clone()
     }
 }
 
@@ -89,25 +93,25 @@ impl Profile {
         if rise < 0.0 {
             ordered.reverse();
         }
-        Ok(Self { pieces: pieces(&ordered, is_closed), points })
+        Ok(Self(Arc::new(Curve { pieces: pieces(&ordered, is_closed), points })))
     }
 
     /// The signed distance of a place (ρ, z).
     pub(super) fn distance(&self, x: [f64; 2]) -> Result<MeridianDistance, &'static str> {
         let to = |point: [f64; 2]| (point[0] - x[0]).hypot(point[1] - x[1]);
-        let reach = self.points.iter().map(|point| to(*point)).fold(f64::INFINITY, f64::min);
+        let reach = self.0.points.iter().map(|point| to(*point)).fold(f64::INFINITY, f64::min);
         let near = |piece: &Piece| to(piece.bound.0) - piece.bound.1 <= reach;
-        let candidates = self.pieces.iter().enumerate().filter(|(_, piece)| near(piece));
+        let candidates = self.0.pieces.iter().enumerate().filter(|(_, piece)| near(piece));
         let nearest = candidates.map(|(number, piece)| {
             let place = piece.nearest(x);
             Nearest { piece: number, place, distance: to(piece.at(place)) }
         });
         let nearest = nearest.min_by(|a, b| a.distance.total_cmp(&b.distance));
         let Some(Nearest { piece, place, distance }) = nearest else { return Err("the profile has no nearest point") };
-        let own = &self.pieces[piece];
+        let own = &self.0.pieces[piece];
         let end = usize::from(place >= 0.5);
         if (place == 0.0 || place == 1.0) && own.is_end[end] {
-            return Ok(self.from_corner(piece, end, x, distance));
+            return Ok(self.at_corner(piece, end, x, distance));
         }
         let (normal, curvature) = (own.normal(place), own.curvature(place));
         let point = own.at(place);
@@ -119,14 +123,14 @@ impl Profile {
         Ok(MeridianDistance { value, normal, bending: curvature / room })
     }
 
-    /// The distance from an end of the curve, or from a corner between two branches.
-    fn from_corner(&self, piece: usize, end: usize, x: [f64; 2], distance: f64) -> MeridianDistance {
-        let own = &self.pieces[piece];
+    /// The distance of a place from an end of the curve, or from a corner between two branches.
+    fn at_corner(&self, piece: usize, end: usize, x: [f64; 2], distance: f64) -> MeridianDistance {
+        let own = &self.0.pieces[piece];
         let point = own.polygon[3 * end];
         let away = [x[0] - point[0], x[1] - point[1]];
         let normal = own.normal(end as f64);
         let meets = |other: &&Piece| other.is_end[1 - end] && other.polygon[3 * (1 - end)] == point;
-        let other = self.pieces.iter().find(meets).map(|other| other.normal((1 - end) as f64));
+        let other = self.0.pieces.iter().find(meets).map(|other| other.normal((1 - end) as f64));
         let mean = other.map_or(normal, |other| {
             let sum = [normal[0] + other[0], normal[1] + other[1]];
             let size = sum[0].hypot(sum[1]);

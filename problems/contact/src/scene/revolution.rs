@@ -6,11 +6,14 @@
 //! ```
 
 use crate::error::SceneError;
-use crate::mortar::vector::{dot, length, plus};
-use crate::scene::counter_surface::Side;
+use crate::mortar::vector::{across as perpendicular, dot, length, plus};
+use crate::scene::counter_surface::{CounterSurface, Side};
 use crate::scene::foot::Foot;
 use crate::scene::profile::Profile;
 use serde::{Deserialize, Serialize};
+
+/// Radial part of a unit normal on the axis that is rounding.
+const LEVEL: f64 = 1e-9;
 
 /// A surface of revolution; an obstacle only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,6 +59,12 @@ pub(super) struct MeridianDistance {
     pub bending: f64,
 }
 
+impl From<Revolution> for CounterSurface {
+    fn from(surface: Revolution) -> Self {
+        Self::Revolution(Box::new(surface))
+    }
+}
+
 impl Revolution {
     /// Refuses numbers that make no surface; `field` stands in messages.
     ///
@@ -90,16 +99,21 @@ impl Revolution {
         let across = plus(from, -along, axis);
         let radius = length(across);
         let distance = self.meridian.distance([radius, along])?;
-        if radius <= f64::EPSILON * distance.value.abs() {
+        let [first, second] = distance.normal;
+        let is_on_axis = radius <= f64::EPSILON * (along.abs() + distance.value.abs());
+        if is_on_axis && first.abs() > LEVEL {
             return Err("it lies on the axis of the surface, where every normal is as good");
         }
-        let outward = across.map(|part| part / radius);
-        let [first, second] = distance.normal;
+        // On the axis of a surface that is level there, it bends the same way in all directions.
+        let (outward, bending_around) = match is_on_axis {
+            true => (perpendicular(axis)[0], distance.bending),
+            false => (across.map(|part| part / radius), first / radius),
+        };
         let in_space =
             |[radial, axial]: [f64; 2]| -> [f64; 3] { std::array::from_fn(|k| radial * outward[k] + axial * axis[k]) };
         let (normal, tangent) = (in_space([first, second]), in_space([-second, first]));
         let around = |i: usize, j: usize| f64::from(u8::from(i == j)) - outward[i] * outward[j] - axis[i] * axis[j];
-        let bending = |i: usize, j: usize| distance.bending * tangent[i] * tangent[j] + first / radius * around(i, j);
+        let bending = |i: usize, j: usize| distance.bending * tangent[i] * tangent[j] + bending_around * around(i, j);
         Ok(Foot::of_distance(
             distance.value,
             normal,

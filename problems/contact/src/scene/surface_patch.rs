@@ -1,4 +1,4 @@
-//! A curved facet of a [mesh surface](super::mesh_surface): projection along its normals, and the nearest points of its rims.
+//! A curved facet of a mesh surface: projection along its normals, and the nearest points of its rims.
 
 use crate::mortar::vector::{cross, dot, length, plus};
 use crate::mortar::{NODES, Quadratic};

@@ -19,8 +19,8 @@ pub fn obstacles() -> Vec<(&'static str, CounterSurface)> {
         ("ball", CounterSurface::Ball { centre: [4.2, 4.5, top + 60.0], radius: 60.0, side: Side::Outside }),
         ("socket", CounterSurface::Ball { centre: [5.2, 3.5, top + 0.3 - 50.0], radius: 50.0, side: Side::Inside }),
         ("cylinder", CounterSurface::cylinder([5.0, 4.4, top + 40.0], [1.0, 0.4, 0.03], 40.0, Side::Outside)),
-        ("torus", CounterSurface::Revolution(torus(top))),
-        ("profile", CounterSurface::Revolution(Revolution { meridian: profile(), ..torus(top) })),
+        ("torus", torus(top).into()),
+        ("profile", Revolution { meridian: profile(), ..torus(top) }.into()),
         ("mesh", CounterSurface::Mesh(wavy_mesh(top))),
         ("waves", CounterSurface::Waves { base: top + 0.1, first: 0.08, second: 0.1, period: 13.0, origin: [0.0; 2] }),
     ]

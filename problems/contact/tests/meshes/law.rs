@@ -42,7 +42,9 @@ fn level(obstacle: &CounterSurface, y: Point) -> (f64, Point) {
             let way = plus(centre, -1.0, y);
             (inside(side) * (radius * radius - dot(way, way)), way.map(|x| 2.0 * inside(side) * x))
         }
-        CounterSurface::Revolution(Revolution { point, axis, side, meridian: Meridian::Line { radius, .. } }) => {
+        CounterSurface::Revolution(ref surface) => {
+            let Revolution { point, axis, side, ref meridian } = **surface;
+            let Meridian::Line { radius, slope: 0.0 } = *meridian else { unreachable!("cylinders") };
             let across = cross(plus(y, -1.0, point), axis);
             let slope = cross(across, axis).map(|x| 2.0 * inside(side) * x);
             (inside(side) * (radius * radius * dot(axis, axis) - dot(across, across)), slope)

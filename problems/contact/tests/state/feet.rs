@@ -6,7 +6,7 @@ fn surfaces() -> Vec<CounterSurface> {
     let ball = |side| CounterSurface::Ball { centre: [4.0, -3.0, 40.0], radius: 30.0, side };
     let bore = |side| CounterSurface::cylinder([1.0, 2.0, 33.0], [3.0, 1.0, 0.5], 20.0, side);
     let turned = |side, meridian| {
-        CounterSurface::Revolution(Revolution { point: [1.0, 2.0, 33.0], axis: [3.0, 1.0, 0.5], side, meridian })
+        CounterSurface::from(Revolution { point: [1.0, 2.0, 33.0], axis: [3.0, 1.0, 0.5], side, meridian })
     };
     let torus = |side, major_radius, minor_radius| turned(side, Meridian::Circle { major_radius, minor_radius });
     let profile = (0..9).map(|k| f64::from(k) * 8.0 - 32.0).map(|z| [20.0 - 0.01 * z * z + 0.1 * z, z]).collect();

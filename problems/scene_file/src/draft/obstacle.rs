@@ -18,8 +18,8 @@ pub(super) fn obstacle(face: &Face<'_>) -> Proposal {
             plane(face, normal)
         )),
         (Form::Round(primitive, convex), Some(normal)) if *convex => Proposal::Lines(format!(
-            "# The face bulges: a rigid plane that touches it where it lies farthest out. If it lies in a seat of its own \
-             form instead:\n{}{}",
+            "# The face bulges: a rigid plane that touches it where it lies farthest out. In a seat of its form instead:\n\
+             {}{}",
             commented(&around(primitive, true)),
             plane(face, normal)
         )),
