@@ -78,6 +78,7 @@ impl Chart {
             }
         };
         let cylinder = line.and_then(|(point, axis, radius)| {
+            let axis = forward(axis);
             // Angles are cut opposite to the middle of the face.
             let from = |x: &[f64; 3]| {
                 let from = plus(*x, -1.0, point);
@@ -139,6 +140,13 @@ impl Chart {
         });
         (least / most, sign)
     }
+}
+
+/// A direction or its opposite: the one of which the first component that is not small is positive. Rounding decides
+/// which of the two an axis comes as.
+fn forward(axis: [f64; 3]) -> [f64; 3] {
+    let leading = axis.into_iter().find(|x| x.abs() > 0.1).unwrap_or(1.0);
+    axis.map(|x| x * leading.signum())
 }
 
 /// Cosine and sine of the direction of the smallest rectangle around some places: it has a side of their convex hull.

@@ -1,6 +1,6 @@
 //! The surface of least squares through points with given parameters, on nets that are refined until it is near enough.
 
-use super::net::{SplineNet, weights};
+use super::net::{SplineNet, ends, interval, weights};
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::symmetric::LowerPattern;
@@ -15,7 +15,11 @@ const BENDING: f64 = 1e-6;
 const CORRECTIONS: usize = 6;
 /// Control points per point up to which the net is refined.
 const MOST_PER_POINT: usize = 4;
-/// Halving one side alone is enough where it divides the largest residual by this.
+/// Points per control point with which the points determine a net, between them too.
+const DETERMINED: usize = 3;
+/// Length of an interval between knots, as a part of the side, below which it is not halved.
+const SHORTEST: f64 = 1e-4;
+/// Halving intervals along one side alone is enough where it divides the largest residual by this.
 const ENOUGH: f64 = 4.0;
 
 /// Points with their parameters.
@@ -28,10 +32,11 @@ pub(super) struct Samples<'a> {
     pub sides: [f64; 2],
 }
 
-/// A surface with the largest |S(s_k, t_k) − x_k|, mm.
+/// A surface with S(s_k, t_k) − x_k, and the largest length of these, mm.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
     pub net: SplineNet,
+    rests: Vec<[f64; 3]>,
     pub residual: f64,
 }
 
@@ -39,62 +44,85 @@ impl Samples<'_> {
     /// The surface on the coarsest net whose residual is at most `goal`, or the nearest one.
     pub(super) fn fit(&self, goal: f64) -> Result<Fit, FactorizationError> {
         let centre = self.points.iter().fold([0.0; 3], |sum, x| plus(sum, 1.0 / self.points.len() as f64, *x));
-        let mut best = self.improved(SplineNet::at_one_place(centre, [1, 1]))?;
-        let most = MOST_PER_POINT * self.points.len();
-        let is_small = |along: [bool; 2], net: &SplineNet| {
-            let counts = net.counts();
-            (0..2).map(|axis| if along[axis] { 2 * counts[axis] - 3 } else { counts[axis] }).product::<usize>() <= most
-        };
-        let mut current = best.clone();
+        let mut best = self.improved(SplineNet::at_one_place(centre))?;
+        let (mut current, mut reference) = (best.clone(), best.net.clone());
         while best.residual > goal {
-            let mut next: Option<Fit> = None;
-            for along in [[true, false], [false, true], [true, true]] {
-                if !is_small(along, &current.net) {
-                    continue;
-                }
-                let is_enough = |fit: &Fit| fit.residual <= goal || ENOUGH * fit.residual <= current.residual;
-                if along == [true, true] && next.as_ref().is_some_and(is_enough) {
-                    continue;
-                }
-                let fit = self.improved(current.net.halved(along))?;
-                // A finer net has to earn its control points.
-                let is_better = |other: &Fit| fit.residual < other.residual;
-                if next.as_ref().is_none_or(is_better) {
-                    next = Some(fit);
-                }
+            let Some(finer) = self.finer(&current, &reference, goal)? else { break };
+            if finer.residual < best.residual {
+                best = finer.clone();
             }
-            let Some(fit) = next else { break };
-            if fit.residual < best.residual {
-                best = fit.clone();
+            // What points determine between them is what finer nets bend away from.
+            if DETERMINED * finer.net.points().len() <= self.points.len() {
+                reference = finer.net.clone();
             }
-            current = fit;
+            current = finer;
         }
         Ok(best)
     }
 
-    /// A net whose correction bends least.
+    /// The better of two fits with the intervals halved along one parameter in which points are off by more than the
+    /// goal or, where neither is much better, that along both; none where the points do not determine finer nets.
+    fn finer(&self, fit: &Fit, reference: &SplineNet, goal: f64) -> Result<Option<Fit>, FactorizationError> {
+        let middles = [0, 1].map(|axis| self.middles(fit, axis, goal));
+        let mut best: Option<Fit> = None;
+        for along in [[true, false], [false, true], [true, true]] {
+            let knots = [0, 1].map(|axis| if along[axis] { &middles[axis][..] } else { &[] });
+            let counts = fit.net.counts();
+            let size = (counts[0] + knots[0].len()) * (counts[1] + knots[1].len());
+            let is_enough = |found: &Fit| found.residual <= goal || ENOUGH * found.residual <= fit.residual;
+            let has_ended = along == [true, true] && best.as_ref().is_some_and(is_enough);
+            let has_none = (0..2).any(|axis| along[axis] && knots[axis].is_empty());
+            if has_ended || has_none || size > MOST_PER_POINT * self.points.len() {
+                continue;
+            }
+            let further = [0, 1].map(|axis| {
+                let known = ends(&reference.bases()[axis]);
+                let all = ends(&fit.net.bases()[axis]).iter().chain(knots[axis]).copied();
+                let mut further: Vec<f64> = all.filter(|knot| !known.contains(knot)).collect();
+                further.sort_unstable_by(f64::total_cmp);
+                further
+            });
+            let found = self.improved(reference.refined(further.each_ref().map(Vec::as_slice)))?;
+            if best.as_ref().is_none_or(|best| found.residual < best.residual) {
+                best = Some(found);
+            }
+        }
+        Ok(best)
+    }
+
+    /// The middles of the intervals along a parameter in which a point is off by more than the goal.
+    fn middles(&self, fit: &Fit, axis: usize, goal: f64) -> Vec<f64> {
+        let basis = &fit.net.bases()[axis];
+        let ends = ends(basis);
+        let mut is_off = vec![false; ends.len() - 1];
+        for (place, rest) in self.places.iter().zip(&fit.rests) {
+            is_off[interval(basis, place[axis])] |= length(*rest) > goal;
+        }
+        let halved = is_off.iter().zip(ends.windows(2)).filter(|(off, pair)| **off && pair[1] - pair[0] > SHORTEST);
+        halved.map(|(_, pair)| 0.5 * (pair[0] + pair[1])).collect()
+    }
+
+    /// A net with the correction that bends least.
     fn improved(&self, net: SplineNet) -> Result<Fit, FactorizationError> {
         let (factor, rows) = self.factored(&net)?;
-        let mut best = Fit { residual: self.residual(&net, &rows).1, net };
+        let mut best = self.measured(net, &rows);
         for _ in 0..CORRECTIONS {
-            let (rest, _) = self.residual(&best.net, &rows);
-            let right = |axis: usize| {
+            let change = [0, 1, 2].map(|axis| {
                 let mut right = vec![0.0; best.net.points().len()];
-                for (row, rest) in rows.iter().zip(&rest) {
-                    row.iter().for_each(|(point, weight)| right[*point] += weight * rest[axis] / rest_count(&rows));
+                for (row, rest) in rows.iter().zip(&best.rests) {
+                    row.iter().for_each(|(point, weight)| right[*point] += weight * rest[axis] / rows.len() as f64);
                 }
                 factor.solve_in_place(&mut right);
                 right
-            };
-            let change = [right(0), right(1), right(2)];
+            });
             let mut net = best.net.clone();
             net.add(|point| [0, 1, 2].map(|axis| change[axis][point]));
-            let (_, residual) = self.residual(&net, &rows);
-            if residual.is_nan() || residual >= best.residual {
+            let found = self.measured(net, &rows);
+            if found.residual.is_nan() || found.residual >= best.residual {
                 break;
             }
-            let still = residual > 0.5 * best.residual;
-            best = Fit { net, residual };
+            let still = found.residual > 0.5 * best.residual;
+            best = found;
             if still {
                 break;
             }
@@ -102,21 +130,20 @@ impl Samples<'_> {
         Ok(best)
     }
 
-    /// From the surface to the points at their parameters, and the largest distance.
-    fn residual(&self, net: &SplineNet, rows: &[Vec<(usize, f64)>]) -> (Vec<[f64; 3]>, f64) {
+    /// A net with what is left at the points.
+    fn measured(&self, net: SplineNet, rows: &[Vec<(usize, f64)>]) -> Fit {
         let rest = |(row, x): (&Vec<(usize, f64)>, &[f64; 3])| {
             row.iter().fold(*x, |rest, (point, weight)| plus(rest, -weight, net.points()[*point]))
         };
         let rests: Vec<[f64; 3]> = rows.iter().zip(self.points).map(rest).collect();
-        let largest = rests.iter().map(|rest| length(*rest)).fold(0.0, f64::max);
-        (rests, largest)
+        let residual = rests.iter().map(|rest| length(*rest)).fold(0.0, f64::max);
+        Fit { net, rests, residual }
     }
 
     /// The factored normal equations of a net, and the weights of its control points at all points.
     fn factored(&self, net: &SplineNet) -> Result<(NumericFactor, Vec<Vec<(usize, f64)>>), FactorizationError> {
         let [n1, n2] = net.counts();
         let index = |i: usize, j: usize| if n1 < n2 { (i * n2 + j, j * n1 + i) } else { (i * n2 + j, i * n2 + j) };
-        let near = |center: usize, count: usize| center.saturating_sub(3)..(center + 4).min(count);
         let mut columns = vec![Vec::new(); n1 * n2];
         let mut order = vec![0; n1 * n2];
         for (i, j) in (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j))) {
@@ -132,29 +159,36 @@ impl Samples<'_> {
             }
         };
         let rows: Vec<Vec<(usize, f64)>> = self.places.iter().map(|place| self.row(net, *place)).collect();
-        let share = 1.0 / rest_count(&rows);
+        let share = 1.0 / rows.len() as f64;
         for row in &rows {
             for &(first, a) in row {
-                row.iter().filter(|(second, _)| *second <= first).for_each(|(second, b)| add(first, *second, share * a * b));
+                row.iter()
+                    .filter(|(second, _)| *second <= first)
+                    .for_each(|(second, b)| add(first, *second, share * a * b));
             }
         }
-        let area = self.sides[0] * self.sides[1];
-        // λ h⁴/A with h² = A/n.
-        let weight = BENDING * area * share * share;
+        self.bending(net, share, &mut add);
+        Ok((Arc::new(SymbolicFactor::new(pattern, order)?).factorize(&values)?, rows))
+    }
+
+    /// Adds the lower entries of the bending, times λ h⁴/A with h² = A/n; `share`: 1/n.
+    fn bending(&self, net: &SplineNet, share: f64, add: &mut dyn FnMut(usize, usize, f64)) {
+        let [n1, n2] = net.counts();
+        let weight = BENDING * self.sides[0] * self.sides[1] * share * share;
         let [along, across] = [0, 1].map(|axis| {
             let places: Vec<f64> = net.bases()[axis].greville().into_iter().map(|t| self.sides[axis] * t).collect();
             bending_line(&places, self.sides[axis]).map(|rows| rows.tr_mul(&rows))
         });
-        for (i, j) in (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j))) {
-            for (k, l) in near(i, n1).flat_map(|k| near(j, n2).map(move |l| (k, l))).filter(|(k, l)| k * n2 + l <= i * n2 + j) {
-                let product = |first: &Matrix, second: &Matrix| first[(i, k)] * second[(j, l)];
-                let own = product(&along[2], &across[0])
-                    + 2.0 * product(&along[1], &across[1])
-                    + product(&along[0], &across[2]);
-                add(i * n2 + j, k * n2 + l, weight * own);
+        for (i, k) in (0..n1).flat_map(|i| near(i, n1).map(move |k| (i, k))) {
+            for (j, l) in (0..n2).flat_map(|j| near(j, n2).map(move |l| (j, l))) {
+                let (row, column) = (i * n2 + j, k * n2 + l);
+                if column <= row {
+                    let product = |first: &Matrix, second: &Matrix| first[(i, k)] * second[(j, l)];
+                    let ends = product(&along[2], &across[0]) + product(&along[0], &across[2]);
+                    add(row, column, weight * (ends + 2.0 * product(&along[1], &across[1])));
+                }
             }
         }
-        Ok((Arc::new(SymbolicFactor::new(pattern, order)?).factorize(&values)?, rows))
     }
 
     fn row(&self, net: &SplineNet, place: [f64; 2]) -> Vec<(usize, f64)> {
@@ -165,6 +199,7 @@ impl Samples<'_> {
     }
 }
 
-fn rest_count(rows: &[Vec<(usize, f64)>]) -> f64 {
-    rows.len() as f64
+/// The functions along a parameter that overlap one of them.
+fn near(function: usize, count: usize) -> std::ops::Range<usize> {
+    function.saturating_sub(3)..(function + 4).min(count)
 }

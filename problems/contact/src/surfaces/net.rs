@@ -1,5 +1,7 @@
 //! A net of control points in space, and the cubic B-spline surface that it makes.
 
+#[cfg(test)]
+use crate::mortar::vector::cross;
 use crate::mortar::vector::{dot, length, plus};
 use crate::scalar::{Dual, Scalar};
 use crate::shape::Basis;
@@ -11,32 +13,35 @@ const STEPS: usize = 20;
 /// A change of the parameters that ends them.
 const STILL: f64 = 1e-14;
 
-/// A clamped uniform B-spline surface of degree 3 over [0, 1]², with control points in space.
+/// A clamped B-spline surface of degree 3 over [0, 1]², with control points in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplineNet {
     bases: [Basis; 2],
     points: Vec<[f64; 3]>,
 }
 
-/// The basis over a number of intervals.
-pub(super) fn basis(intervals: usize) -> Basis {
-    Basis::clamped_at(DEGREE, (1..intervals).map(|knot| knot as f64 / intervals as f64))
-}
-
 /// The functions that are not zero at a place, with their values.
 pub(super) fn weights<T: Scalar>(basis: &Basis, place: T) -> impl Iterator<Item = (usize, T)> {
-    let spans = basis.count() - DEGREE;
-    let first = ((place.value() * spans as f64) as usize).min(spans - 1);
-    // Rounding may put a place on a knot into either interval; the function left out is zero there.
-    basis.values(place).into_iter().enumerate().skip(first.saturating_sub(1)).take(DEGREE + 3)
+    let first = interval(basis, place.value());
+    basis.values(place).into_iter().enumerate().skip(first).take(DEGREE + 1)
+}
+
+/// The interval between knots in which a parameter lies.
+pub(super) fn interval(basis: &Basis, place: f64) -> usize {
+    let inner = &basis.knots()[DEGREE + 1..basis.count()];
+    inner.partition_point(|knot| *knot <= place)
+}
+
+/// The ends of all intervals between knots.
+pub(super) fn ends(basis: &Basis) -> &[f64] {
+    &basis.knots()[DEGREE..=basis.count()]
 }
 
 impl SplineNet {
-    /// A surface of which all points lie in one, over some intervals along both parameters.
-    pub(super) fn at_one_place(place: [f64; 3], intervals: [usize; 2]) -> Self {
-        let bases = intervals.map(basis);
-        let count = bases[0].count() * bases[1].count();
-        Self { bases, points: vec![place; count] }
+    /// A surface without inner knots of which all points lie in one.
+    pub(super) fn at_one_place(place: [f64; 3]) -> Self {
+        let bases = [0, 1].map(|_| Basis::clamped_at(DEGREE, std::iter::empty()));
+        Self { bases, points: vec![place; (DEGREE + 1) * (DEGREE + 1)] }
     }
 
     /// Control points along both parameters.
@@ -88,6 +93,13 @@ impl SplineNet {
         })
     }
 
+    /// The normal, whose length is the scale of area.
+    #[cfg(test)]
+    pub(super) fn normal(&self, place: [f64; 2]) -> [f64; 3] {
+        let [a, b] = self.slopes(place);
+        cross(a, b)
+    }
+
     /// The distance of a point from the surface, from first parameters on: Gauss-Newton, of which no step goes farther
     /// away.
     pub(crate) fn distance(&self, x: [f64; 3], first: [f64; 2]) -> f64 {
@@ -112,39 +124,32 @@ impl SplineNet {
         best
     }
 
-    /// The same surface with every interval along one or both parameters halved.
-    pub(super) fn halved(&self, along: [bool; 2]) -> Self {
-        let counts = self.counts();
-        let intervals = [0, 1].map(|axis| (counts[axis] - DEGREE) * if along[axis] { 2 } else { 1 });
-        let bases = intervals.map(basis);
-        let [rows, columns] = [0, 1].map(|axis| {
-            let same = |index: usize| vec![(index, 1.0)];
-            if along[axis] { insertion(&self.bases[axis]) } else { (0..counts[axis]).map(same).collect() }
-        });
+    /// The same surface with further knots along both parameters, ascending.
+    pub(super) fn refined(&self, knots: [&[f64]; 2]) -> Self {
+        let [(first, rows), (second, columns)] = [0, 1].map(|axis| insertion(&self.bases[axis], knots[axis]));
+        let count = self.bases[1].count();
         let mut points = Vec::with_capacity(rows.len() * columns.len());
         for row in &rows {
             for column in &columns {
                 let mut sum = [0.0; 3];
                 for (i, a) in row {
-                    column.iter().for_each(|(j, b)| sum = plus(sum, a * b, self.points[i * counts[1] + j]));
+                    column.iter().for_each(|(j, b)| sum = plus(sum, a * b, self.points[i * count + j]));
                 }
                 points.push(sum);
             }
         }
-        Self { bases, points }
+        Self { bases: [first, second], points }
     }
 }
 
-/// The control points after a knot is inserted into the middle of every interval, each as (point before, share)
-/// (Boehm's algorithm).
-fn insertion(basis: &Basis) -> Vec<Vec<(usize, f64)>> {
+/// The basis with further knots, and its control points, each as (point before, share) (Boehm's algorithm).
+fn insertion(basis: &Basis, further: &[f64]) -> (Basis, Vec<Vec<(usize, f64)>>) {
     let mut knots = basis.knots().to_vec();
     let mut rows: Vec<Vec<(usize, f64)>> = (0..basis.count()).map(|index| vec![(index, 1.0)]).collect();
-    let middles = basis.knots()[DEGREE..=basis.count()].windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
-    for middle in middles {
-        let span = knots.partition_point(|knot| *knot <= middle) - 1;
+    for &knot in further {
+        let span = knots.partition_point(|other| *other <= knot) - 1;
         let row = |index: usize| {
-            let share = (middle - knots[index]) / (knots[index + DEGREE] - knots[index]);
+            let share = (knot - knots[index]) / (knots[index + DEGREE] - knots[index]);
             let mut sum: Vec<(usize, f64)> = rows[index].iter().map(|(point, own)| (*point, share * own)).collect();
             for (point, own) in &rows[index - 1] {
                 match sum.iter_mut().find(|(other, _)| other == point) {
@@ -156,9 +161,10 @@ fn insertion(basis: &Basis) -> Vec<Vec<(usize, f64)>> {
         };
         let between: Vec<_> = (span - DEGREE + 1..=span).map(row).collect();
         rows.splice(span - DEGREE + 1..span, between);
-        knots.insert(span + 1, middle);
+        knots.insert(span + 1, knot);
     }
-    rows
+    let inner = knots[DEGREE + 1..rows.len()].iter().copied();
+    (Basis::clamped_at(DEGREE, inner), rows)
 }
 
 #[cfg(test)]
@@ -166,7 +172,7 @@ mod tests {
     use super::*;
 
     fn wavy() -> SplineNet {
-        let mut net = SplineNet::at_one_place([0.0; 3], [3, 2]);
+        let mut net = SplineNet::at_one_place([0.0; 3]).refined([&[0.3, 0.5], &[0.6]]);
         let columns = net.counts()[1];
         net.add(|index| {
             let [i, j] = [index / columns, index % columns].map(|index| index as f64);
@@ -176,14 +182,15 @@ mod tests {
     }
 
     #[test]
-    fn halved_intervals_leave_the_surface_as_it_is() {
+    fn further_knots_leave_the_surface_as_it_is() {
         let net = wavy();
-        for along in [[true, false], [false, true], [true, true]] {
-            let halved = net.halved(along);
-            assert_eq!(halved.counts(), [if along[0] { 9 } else { 6 }, if along[1] { 7 } else { 5 }]);
+        let cases: [[&[f64]; 2]; 3] = [[&[0.1, 0.4, 0.45], &[]], [&[], &[0.2, 0.9]], [&[0.75], &[0.3, 0.8]]];
+        for knots in cases {
+            let refined = net.refined(knots);
+            assert_eq!(refined.counts(), [6 + knots[0].len(), 5 + knots[1].len()]);
             for index in 0..200 {
                 let place = [0.618_034, 0.754_878].map(|step| (f64::from(index) * step).fract());
-                let change = plus(net.at(place), -1.0, halved.at(place));
+                let change = plus(net.at(place), -1.0, refined.at(place));
                 // Rounding of sums of numbers up to 20.
                 assert!(length(change) < 2e-14, "{change:?} at {place:?}");
             }
@@ -195,8 +202,7 @@ mod tests {
         let net = wavy();
         for index in 0..50 {
             let place = [0.618_034, 0.754_878].map(|step| 0.1 + 0.8 * (f64::from(index) * step).fract());
-            let [a, b] = net.slopes(place);
-            let normal = crate::mortar::vector::cross(a, b);
+            let normal = net.normal(place);
             let normal = normal.map(|x| x / length(normal));
             let beside = plus(net.at(place), 0.05, normal);
             let found = net.distance(beside, place.map(|x| x + 0.03));

@@ -120,7 +120,8 @@ fn files(
             let surfaces;
             (surfaces, left_out) = surfaces::files(problem, controls)?;
             if options.step && surfaces.is_empty() {
-                let why = if left_out.is_empty() { "no face moves with the controls".into() } else { left_out.join("; ") };
+                let why =
+                    if left_out.is_empty() { "no face moves with the controls".into() } else { left_out.join("; ") };
                 return Err(Failure::Input(format!("--step: no face has a B-spline surface: {why}")));
             }
             files.extend(surfaces);
