@@ -6,6 +6,8 @@ use super::part::{Part, Source, rectangle};
 use crate::body::mesh::{CellFace, bounding_box};
 use crate::equilibrium::ContactProblem;
 use crate::linear::FactorizationError;
+use crate::mortar::vector::{cross, dot, length};
+use crate::mortar::{Facet, doubled_area};
 use crate::shape::LatticeShape;
 use thiserror::Error;
 
@@ -15,6 +17,8 @@ const FINE: f64 = 1e-3;
 const SHARE: f64 = 1e-4;
 /// Nets are refined until the distance is this part of the allowed one, as far as the nodes determine them.
 const GOAL: f64 = 0.01;
+/// Largest angle between the normals of a facet and of the surface at its centre, degrees: more are waves between nodes.
+const ANGLE: f64 = 10.0;
 /// How far a surface reaches beyond its face on every side, as a part of the length of the face along that side.
 const OVERLAP: f64 = 0.05;
 
@@ -31,6 +35,8 @@ pub struct SplineFace {
     pub distance: f64,
     /// The distance that is allowed, mm.
     pub allowed: f64,
+    /// The largest angle between the normals of a facet of the mesh and of the surface at its centre, degrees.
+    pub angle: f64,
 }
 
 /// Why a face has no surface.
@@ -54,6 +60,19 @@ pub enum SurfaceError {
         /// Largest distance of a node, mm.
         distance: f64,
         /// Largest one that is allowed, mm.
+        allowed: f64,
+    },
+    /// The surface has waves between the nodes.
+    #[error(
+        "face {face}: between nodes, the normal of the B-spline surface is {angle:.1} degrees off that of a facet; \
+         allowed: {allowed} degrees"
+    )]
+    Waves {
+        /// The face.
+        face: String,
+        /// Largest angle, degrees.
+        angle: f64,
+        /// Largest one that is allowed, degrees.
         allowed: f64,
     },
     /// The normal equations were not solved.
@@ -109,11 +128,22 @@ pub(super) fn spline_face(
     let places: Vec<[f64; 2]> = places.iter().map(inside).collect();
     let points: Vec<[f64; 3]> = part.points.iter().map(|&point| end[point as usize]).collect();
     let fit = Samples { places: &places, points: &points, sides }.fit(GOAL * allowed);
-    let Fit { net, .. } = fit.map_err(|source| SurfaceError::Equations { face: name.clone(), source })?;
-    let nodes = points.iter().zip(&places).take(part.nodes);
-    let distance = nodes.map(|(x, place)| net.distance(*x, *place)).fold(0.0, f64::max);
-    if distance.is_nan() || distance > allowed {
+    let Fit { net, distances, .. } = fit.map_err(|source| SurfaceError::Equations { face: name.clone(), source })?;
+    let distance = distances.into_iter().take(part.nodes).fold(0.0, f64::max);
+    if distance > allowed {
         return Err(SurfaceError::Distance { face: name, distance, allowed });
     }
-    Ok(SplineFace { name, net, nodes: part.nodes, distance, allowed })
+    let place = |node: &u32| inside(&chart.place(start[*node as usize]));
+    let angle = |facet: &Facet| {
+        let corners = facet.corners();
+        let places = corners.iter().map(place).fold([0.0; 2], |[a, b], [s, t]| [a + s, b + t]);
+        let surface = net.normal(places.map(|sum| sum / corners.len() as f64));
+        let flat = doubled_area(&corners.iter().map(|&node| end[node as usize]).collect::<Vec<_>>());
+        length(cross(surface, flat)).atan2(dot(surface, flat)).to_degrees()
+    };
+    let angle = part.facets.iter().map(angle).fold(0.0, f64::max);
+    if angle > ANGLE {
+        return Err(SurfaceError::Waves { face: name, angle, allowed: ANGLE });
+    }
+    Ok(SplineFace { name, net, nodes: part.nodes, distance, allowed, angle })
 }

@@ -14,11 +14,11 @@ const BENDING: f64 = 1e-6;
 /// Corrections on one net.
 const CORRECTIONS: usize = 6;
 /// Control points per point up to which the net is refined.
-const MOST_PER_POINT: usize = 4;
+const MOST_PER_POINT: usize = 2;
 /// Points per control point with which the points determine a net, between them too.
 const DETERMINED: usize = 3;
-/// Length of an interval between knots, as a part of the side, below which it is not halved.
-const SHORTEST: f64 = 1e-4;
+/// Difference of parameters, as a part of the side, up to which points lie in one row.
+const ONE_ROW: f64 = 1e-6;
 /// Halving intervals along one side alone is enough where it divides the largest residual by this.
 const ENOUGH: f64 = 4.0;
 
@@ -32,23 +32,35 @@ pub(super) struct Samples<'a> {
     pub sides: [f64; 2],
 }
 
-/// A surface with S(s_k, t_k) − x_k, and the largest length of these, mm.
+/// A surface with x_k − S(s_k, t_k) and the distances of the points from the surface, mm.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
     pub net: SplineNet,
     rests: Vec<[f64; 3]>,
-    pub residual: f64,
+    pub distances: Vec<f64>,
+}
+
+impl Fit {
+    /// The largest distance.
+    fn worst(&self) -> f64 {
+        self.distances.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The largest difference at the parameters of a point.
+    fn residual(&self) -> f64 {
+        self.rests.iter().map(|rest| length(*rest)).fold(0.0, f64::max)
+    }
 }
 
 impl Samples<'_> {
-    /// The surface on the coarsest net whose residual is at most `goal`, or the nearest one.
+    /// The surface on the coarsest net of which no point is farther off than `goal`, or the nearest one.
     pub(super) fn fit(&self, goal: f64) -> Result<Fit, FactorizationError> {
         let centre = self.points.iter().fold([0.0; 3], |sum, x| plus(sum, 1.0 / self.points.len() as f64, *x));
         let mut best = self.improved(SplineNet::at_one_place(centre))?;
         let (mut current, mut reference) = (best.clone(), best.net.clone());
-        while best.residual > goal {
+        while best.worst() > goal {
             let Some(finer) = self.finer(&current, &reference, goal)? else { break };
-            if finer.residual < best.residual {
+            if finer.worst() < best.worst() {
                 best = finer.clone();
             }
             // What points determine between them is what finer nets bend away from.
@@ -69,7 +81,7 @@ impl Samples<'_> {
             let knots = [0, 1].map(|axis| if along[axis] { &middles[axis][..] } else { &[] });
             let counts = fit.net.counts();
             let size = (counts[0] + knots[0].len()) * (counts[1] + knots[1].len());
-            let is_enough = |found: &Fit| found.residual <= goal || ENOUGH * found.residual <= fit.residual;
+            let is_enough = |found: &Fit| found.worst() <= goal || ENOUGH * found.worst() <= fit.worst();
             let has_ended = along == [true, true] && best.as_ref().is_some_and(is_enough);
             let has_none = (0..2).any(|axis| along[axis] && knots[axis].is_empty());
             if has_ended || has_none || size > MOST_PER_POINT * self.points.len() {
@@ -83,23 +95,31 @@ impl Samples<'_> {
                 further
             });
             let found = self.improved(reference.refined(further.each_ref().map(Vec::as_slice)))?;
-            if best.as_ref().is_none_or(|best| found.residual < best.residual) {
+            if best.as_ref().is_none_or(|best| found.worst() < best.worst()) {
                 best = Some(found);
             }
         }
         Ok(best)
     }
 
-    /// The middles of the intervals along a parameter in which a point is off by more than the goal.
+    /// The knots that halve the intervals along a parameter in which a point is farther off than the goal: as many rows
+    /// of points on one side as on the other, so that every interval has a row. Intervals of one row stay.
     fn middles(&self, fit: &Fit, axis: usize, goal: f64) -> Vec<f64> {
         let basis = &fit.net.bases()[axis];
-        let ends = ends(basis);
-        let mut is_off = vec![false; ends.len() - 1];
-        for (place, rest) in self.places.iter().zip(&fit.rests) {
-            is_off[interval(basis, place[axis])] |= length(*rest) > goal;
+        let count = ends(basis).len() - 1;
+        let (mut is_off, mut rows) = (vec![false; count], vec![Vec::new(); count]);
+        for (place, distance) in self.places.iter().zip(&fit.distances) {
+            let own = interval(basis, place[axis]);
+            is_off[own] |= *distance > goal;
+            rows[own].push(place[axis]);
         }
-        let halved = is_off.iter().zip(ends.windows(2)).filter(|(off, pair)| **off && pair[1] - pair[0] > SHORTEST);
-        halved.map(|(_, pair)| 0.5 * (pair[0] + pair[1])).collect()
+        let middle = |(rows, is_off): (&mut Vec<f64>, bool)| {
+            rows.sort_unstable_by(f64::total_cmp);
+            rows.dedup_by(|next, before| *next - *before < ONE_ROW);
+            let half = rows.len() / 2;
+            (is_off && half > 0).then(|| 0.5 * (rows[half - 1] + rows[half]))
+        };
+        rows.iter_mut().zip(is_off).filter_map(middle).collect()
     }
 
     /// A net with the correction that bends least.
@@ -118,15 +138,17 @@ impl Samples<'_> {
             let mut net = best.net.clone();
             net.add(|point| [0, 1, 2].map(|axis| change[axis][point]));
             let found = self.measured(net, &rows);
-            if found.residual.is_nan() || found.residual >= best.residual {
+            let (before, after) = (best.residual(), found.residual());
+            if after.is_nan() || after >= before {
                 break;
             }
-            let still = found.residual > 0.5 * best.residual;
             best = found;
-            if still {
+            if after > 0.5 * before {
                 break;
             }
         }
+        let points = self.points.iter().zip(self.places);
+        best.distances = points.map(|(x, place)| best.net.distance(*x, *place)).collect();
         Ok(best)
     }
 
@@ -135,9 +157,8 @@ impl Samples<'_> {
         let rest = |(row, x): (&Vec<(usize, f64)>, &[f64; 3])| {
             row.iter().fold(*x, |rest, (point, weight)| plus(rest, -weight, net.points()[*point]))
         };
-        let rests: Vec<[f64; 3]> = rows.iter().zip(self.points).map(rest).collect();
-        let residual = rests.iter().map(|rest| length(*rest)).fold(0.0, f64::max);
-        Fit { net, rests, residual }
+        let rests = rows.iter().zip(self.points).map(rest).collect();
+        Fit { net, rests, distances: Vec::new() }
     }
 
     /// The factored normal equations of a net, and the weights of its control points at all points.

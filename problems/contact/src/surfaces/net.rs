@@ -1,8 +1,6 @@
 //! A net of control points in space, and the cubic B-spline surface that it makes.
 
-#[cfg(test)]
-use crate::mortar::vector::cross;
-use crate::mortar::vector::{dot, length, plus};
+use crate::mortar::vector::{cross, dot, length, plus};
 use crate::scalar::{Dual, Scalar};
 use crate::shape::Basis;
 
@@ -94,7 +92,6 @@ impl SplineNet {
     }
 
     /// The normal, whose length is the scale of area.
-    #[cfg(test)]
     pub(super) fn normal(&self, place: [f64; 2]) -> [f64; 3] {
         let [a, b] = self.slopes(place);
         cross(a, b)

@@ -16,6 +16,7 @@ pub(super) struct Part {
     pub points: Vec<u32>,
     /// How many of the points are nodes.
     pub nodes: usize,
+    pub facets: Vec<Facet>,
     /// Its parameters; none where it folds in all charts.
     pub chart: Option<Chart>,
 }
@@ -119,7 +120,7 @@ impl Source<'_> {
         let is_own = |middle: &MiddlePoint| edges.contains_key(&middle.ends);
         let points = (count..).zip(self.middles).filter(|(_, middle)| is_own(middle)).map(|(number, _)| number);
         let own = nodes.len();
-        Part { points: nodes.into_iter().chain(points).collect(), nodes: own, chart }
+        Part { points: nodes.into_iter().chain(points).collect(), nodes: own, facets: piece.facets.clone(), chart }
     }
 }
 

@@ -35,6 +35,8 @@ pub struct FaceRecord {
     /// Largest distance of a node from the surface, and the allowed one, mm.
     pub distance: f64,
     pub allowed: f64,
+    /// Largest angle between the normals of a facet and of the surface at its centre, degrees.
+    pub angle: f64,
 }
 
 impl OutputFile {

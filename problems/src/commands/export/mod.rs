@@ -176,9 +176,12 @@ impl fmt::Display for ExportJson {
         }
         for file in &self.files {
             writeln!(f, "{:<24} {}", file.file, file.holds)?;
-            for FaceRecord { face, nodes, control_points: [n1, n2], distance, .. } in &file.faces {
-                let distance = rounded(*distance, 2);
-                writeln!(f, "  {face:<22} {n1} x {n2} control points, {nodes} nodes within {distance} mm")?;
+            for FaceRecord { face, nodes, control_points: [n1, n2], distance, angle, .. } in &file.faces {
+                let [distance, angle] = [distance, angle].map(|value| rounded(*value, 2));
+                writeln!(
+                    f,
+                    "  {face:<22} {n1} x {n2} control points, {nodes} nodes within {distance} mm, normals of facets within {angle}°"
+                )?;
             }
         }
         self.left_out.iter().try_for_each(|reason| writeln!(f, "note:        not in a STEP file: {reason}"))

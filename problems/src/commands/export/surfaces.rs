@@ -62,6 +62,7 @@ fn file(problem: &ContactProblem, body: usize, faces: &[SplineFace]) -> Result<O
         control_points: face.net.counts(),
         distance: face.distance,
         allowed: face.allowed,
+        angle: face.angle,
     };
     let faces = faces.iter().map(record).collect();
     Ok(OutputFile { faces, ..OutputFile::text(named_file(&problem.scene, body, "faces", "step"), text, what) })
