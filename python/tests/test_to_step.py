@@ -90,4 +90,5 @@ def test_nodes_of_the_shape_lie_on_the_surface_that_opencascade_reads(contact3d,
     found, stated = surfaces[number]["distance"], faces[number]["distance"]
     # OpenCASCADE's nearest points are good to 1e-7 mm.
     assert found < stated + 1e-6 and stated < faces[number]["allowed"]
-    assert np.sum(surfaces[number]["normals"] * outward, axis=1).min() > 0.8
+    # Normals of facets beside a node of the roller are off by up to 16 degrees.
+    assert np.sum(surfaces[number]["normals"] * outward, axis=1).min() > 0.93

@@ -17,8 +17,9 @@ const CORRECTIONS: usize = 6;
 const MOST_PER_POINT: usize = 2;
 /// Points per control point with which the points determine a net, between them too.
 const DETERMINED: usize = 3;
-/// Difference of parameters, as a part of the side, up to which points lie in one row.
-const ONE_ROW: f64 = 1e-6;
+/// Distance, as a part of the mean one of the points, up to which points lie in one row: a knot between them would tear
+/// the surface.
+const ONE_ROW: f64 = 0.05;
 /// Halving intervals along one side alone is enough where it divides the largest residual by this.
 const ENOUGH: f64 = 4.0;
 
@@ -113,9 +114,11 @@ impl Samples<'_> {
             is_off[own] |= *distance > goal;
             rows[own].push(place[axis]);
         }
+        let mean = (self.sides[0] * self.sides[1] / self.points.len() as f64).sqrt();
+        let one_row = ONE_ROW * mean / self.sides[axis];
         let middle = |(rows, is_off): (&mut Vec<f64>, bool)| {
             rows.sort_unstable_by(f64::total_cmp);
-            rows.dedup_by(|next, before| *next - *before < ONE_ROW);
+            rows.dedup_by(|next, before| *next - *before < one_row);
             let half = rows.len() / 2;
             (is_off && half > 0).then(|| 0.5 * (rows[half - 1] + rows[half]))
         };
