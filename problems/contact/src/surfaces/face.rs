@@ -6,8 +6,8 @@ use super::part::{Part, Source, rectangle};
 use crate::body::mesh::{CellFace, bounding_box};
 use crate::equilibrium::ContactProblem;
 use crate::linear::FactorizationError;
+use crate::mortar::doubled_area;
 use crate::mortar::vector::{cross, dot, length};
-use crate::mortar::{Facet, doubled_area};
 use crate::shape::LatticeShape;
 use thiserror::Error;
 
@@ -127,21 +127,26 @@ pub(super) fn spline_face(
     let inside = |place: &[f64; 2]| [0, 1].map(|axis| ((place[axis] - corner[axis]) / sides[axis]).clamp(0.0, 1.0));
     let places: Vec<[f64; 2]> = places.iter().map(inside).collect();
     let points: Vec<[f64; 3]> = part.points.iter().map(|&point| end[point as usize]).collect();
-    let fit = Samples { places: &places, points: &points, sides }.fit(GOAL * allowed);
+    let place = |node: &u32| inside(&chart.place(start[*node as usize]));
+    // The largest angle between the normals of a facet and of a surface at its centre.
+    let angle = |net: &SplineNet| {
+        let angles = part.facets.iter().map(|facet| {
+            let corners = facet.corners();
+            let places = corners.iter().map(place).fold([0.0; 2], |[a, b], [s, t]| [a + s, b + t]);
+            let surface = net.normal(places.map(|sum| sum / corners.len() as f64));
+            let flat = doubled_area(&corners.iter().map(|&node| end[node as usize]).collect::<Vec<_>>());
+            length(cross(surface, flat)).atan2(dot(surface, flat)).to_degrees()
+        });
+        angles.fold(0.0, f64::max)
+    };
+    let has_waves = |net: &SplineNet| angle(net) > ANGLE;
+    let fit = Samples { places: &places, points: &points, sides, has_waves: &has_waves }.fit(GOAL * allowed);
     let Fit { net, distances, .. } = fit.map_err(|source| SurfaceError::Equations { face: name.clone(), source })?;
     let distance = distances.into_iter().take(part.nodes).fold(0.0, f64::max);
     if distance > allowed {
         return Err(SurfaceError::Distance { face: name, distance, allowed });
     }
-    let place = |node: &u32| inside(&chart.place(start[*node as usize]));
-    let angle = |facet: &Facet| {
-        let corners = facet.corners();
-        let places = corners.iter().map(place).fold([0.0; 2], |[a, b], [s, t]| [a + s, b + t]);
-        let surface = net.normal(places.map(|sum| sum / corners.len() as f64));
-        let flat = doubled_area(&corners.iter().map(|&node| end[node as usize]).collect::<Vec<_>>());
-        length(cross(surface, flat)).atan2(dot(surface, flat)).to_degrees()
-    };
-    let angle = part.facets.iter().map(angle).fold(0.0, f64::max);
+    let angle = angle(&net);
     if angle > ANGLE {
         return Err(SurfaceError::Waves { face: name, angle, allowed: ANGLE });
     }

@@ -31,6 +31,8 @@ pub(super) struct Samples<'a> {
     pub points: &'a [[f64; 3]],
     /// Lengths of both sides of the parameters, mm.
     pub sides: [f64; 2],
+    /// Whether a surface has waves between the points.
+    pub has_waves: &'a dyn Fn(&SplineNet) -> bool,
 }
 
 /// A surface with x_k − S(s_k, t_k) and the distances of the points from the surface, mm.
@@ -74,7 +76,7 @@ impl Samples<'_> {
     }
 
     /// The better of two fits with the intervals halved along one parameter in which points are off by more than the
-    /// goal or, where neither is much better, that along both; none where the points do not determine finer nets.
+    /// goal or, where neither is much better, that along both; none where finer nets have waves or too few points.
     fn finer(&self, fit: &Fit, reference: &SplineNet, goal: f64) -> Result<Option<Fit>, FactorizationError> {
         let middles = [0, 1].map(|axis| self.middles(fit, axis, goal));
         let mut best: Option<Fit> = None;
@@ -96,7 +98,7 @@ impl Samples<'_> {
                 further
             });
             let found = self.improved(reference.refined(further.each_ref().map(Vec::as_slice)))?;
-            if best.as_ref().is_none_or(|best| found.worst() < best.worst()) {
+            if best.as_ref().is_none_or(|best| found.worst() < best.worst()) && !(self.has_waves)(&found.net) {
                 best = Some(found);
             }
         }
