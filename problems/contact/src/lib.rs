@@ -85,6 +85,7 @@ pub mod shape;
 mod shelf;
 pub mod solvers;
 pub mod standstill;
+pub mod surfaces;
 pub mod tfeti;
 mod work_estimate;
 

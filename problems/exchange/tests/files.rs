@@ -32,13 +32,13 @@ fn polynomial() -> SplineHeights {
         let (first, second) = (inner(0, i, 3), inner(1, j, 2));
         16.0 * square(first) + 8.0 * mean(first) * mean(second) + 50.0
     });
-    SplineHeights::new([3, 2], knots.clone(), [4.0, 2.0], heights.collect()).unwrap()
+    SplineHeights::new([3, 2], knots.clone(), ([0.0; 2], [4.0, 2.0]), &heights.collect::<Vec<_>>()).unwrap()
 }
 
 #[test]
 fn the_surface_in_the_file_is_the_surface() {
     let spline = polynomial();
-    for text in [step::surface("a", &spline), step::solid("a", &spline, 0.0).unwrap()] {
+    for text in [step::surfaces("a", [("", spline.patch())]), step::solid("a", &spline, 0.0).unwrap()] {
         let surface = Surface::of(&entities(&text));
         assert_eq!((surface.degrees, surface.points.len()), ([3, 2], 6));
         for (i, j) in (0..=20).flat_map(|i| (0..=20).map(move |j| (i, j))) {
@@ -96,7 +96,7 @@ fn the_edges_of_the_solid_fit_together() {
 #[test]
 fn splines_that_are_none_are_refused() {
     let flat = |knots: Vec<f64>, heights: usize| {
-        SplineHeights::new([1, 1], [knots, vec![0.0, 0.0, 1.0, 1.0]], [1.0, 1.0], vec![1.0; heights])
+        SplineHeights::new([1, 1], [knots, vec![0.0, 0.0, 1.0, 1.0]], ([0.0; 2], [1.0; 2]), &vec![1.0; heights])
     };
     assert!(flat(vec![0.0, 0.0, 1.0, 1.0], 4).is_ok());
     assert!(matches!(flat(vec![0.0, 0.0, 1.0, 1.0], 3), Err(ExchangeError::Count { .. })));

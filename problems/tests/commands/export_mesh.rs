@@ -1,6 +1,6 @@
 //! `export` of the shape of a mesh.
 
-use serde_json::json;
+use serde_json::{Value, json};
 use testset::kit::{self, text};
 
 const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
@@ -33,8 +33,17 @@ fn raised(hold: &str) {
     let printed = kit::json(CONTACT, &[&[scene.as_str()], &options[..]].concat());
     let names: Vec<&str> =
         printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
-    let expected = ["controls.json", "surface.stl", "body.stl", "change.csv", "body.msh", "body.vtu"];
+    let expected = ["controls.json", "surface.stl", "body.stl", "faces.step", "change.csv", "body.msh", "body.vtu"];
     assert_eq!(names, expected);
+    assert_eq!(printed["left_out"], Value::Null);
+    let faces = printed["files"][3]["faces"].as_array().unwrap();
+    let nose = faces.iter().find(|face| face["face"] == "nose").unwrap();
+    let [distance, allowed] = ["distance", "allowed"].map(|key| nose[key].as_f64().unwrap());
+    // 1e-4 of the height of 40 mm; a hundredth of it ends the refinement.
+    assert!(allowed == 0.004 && distance < 0.01 * allowed && nose["nodes"].as_u64().unwrap() > 400, "{nose}");
+    let entities = testset::kit::step_file::entities(&std::fs::read_to_string(out.join("faces.step")).unwrap());
+    let count = entities.values().filter(|(name, _)| name == "B_SPLINE_SURFACE_WITH_KNOTS").count();
+    assert_eq!(count, faces.len());
     let table = std::fs::read_to_string(out.join("change.csv")).unwrap();
     let rows = |face: &str| -> Vec<Vec<f64>> {
         let own = table.lines().filter_map(|line| line.strip_prefix(face));

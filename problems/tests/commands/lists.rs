@@ -86,8 +86,9 @@ fn the_controls_of_several_bodies_are_one_list() {
     let names: Vec<&str> =
         printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
     let bodies = ["base_plate_body.stl", "punch_body.stl", "cap_body.stl"];
+    let surfaces = ["base_plate_faces.step", "punch_faces.step"];
     let meshes = ["base_plate_body.msh", "punch_body.msh", "base_plate_body.vtu", "punch_body.vtu"];
-    let expected = [&["controls.json", "surface.stl"], &bodies[..], &["change.csv"], &meshes];
+    let expected = [&["controls.json", "surface.stl"], &bodies[..], &surfaces, &["change.csv"], &meshes];
     assert_eq!(names, expected.concat());
     let change = std::fs::read_to_string(out.join("change.csv")).unwrap();
     assert!(change.starts_with("body,face,node,") && change.contains("\nbase_plate,top,"), "{}", &change[..200]);
@@ -103,7 +104,6 @@ fn what_several_bodies_do_not_have_is_refused_with_what_to_set() {
     let out = folder.path().join("out");
     for (options, words) in [
         (&["evaluate", "--young-modulus", "1e5"][..], ["--young-modulus", "--set body[0].material.young_modulus"]),
-        (&["export", "--step", "--out", text(&out)], ["--step is allowed", "every shape has --stl and --msh"]),
         (&["export", "--friction-problem", "--out", text(&out)], ["contact[1].tied = true", "no glued faces"]),
         (&["evaluate", "--subdomains", "3"], ["--subdomains = 3", "a divisor of the 4 bricks"]),
         (&["evaluate", "--set", "body[2].block.top.height=9"], ["cap.block.top = 9", "above the bottom"]),

@@ -189,7 +189,7 @@ fn arm([a, b]: [[f64; 3]; 2], middle: [f64; 3]) -> [f64; 3] {
 }
 
 /// Whether the middle of an edge lies off its chord.
-fn is_off([a, b]: [[f64; 3]; 2], middle: [f64; 3]) -> bool {
+pub(crate) fn is_off([a, b]: [[f64; 3]; 2], middle: [f64; 3]) -> bool {
     length(arm([a, b], middle)) > STRAIGHT * length(plus(b, -1.0, a))
 }
 

@@ -19,7 +19,7 @@ const STEPS: usize = 20;
 const SPARE: usize = 2;
 
 /// The first primitive, of plane, cylinder, cone and sphere, that all points lie on; `normals`: of the facets.
-pub(super) fn primitive(points: &[[f64; 3]], normals: &[[f64; 3]]) -> Option<Primitive> {
+pub(crate) fn primitive(points: &[[f64; 3]], normals: &[[f64; 3]]) -> Option<Primitive> {
     let centre = mean(points);
     let size = points.iter().map(|&x| length(plus(x, -1.0, centre))).fold(0.0, f64::max);
     let fits = |primitive: &Primitive| points.iter().all(|&x| primitive.distance(x).abs() <= NEAR * size);
@@ -37,7 +37,7 @@ pub(super) fn primitive(points: &[[f64; 3]], normals: &[[f64; 3]]) -> Option<Pri
     enough.filter_map(|(start, _)| improved(start, points, size)).find(fits)
 }
 
-fn mean(points: &[[f64; 3]]) -> [f64; 3] {
+pub(crate) fn mean(points: &[[f64; 3]]) -> [f64; 3] {
     points.iter().fold([0.0; 3], |sum, &x| plus(sum, 1.0 / points.len() as f64, x))
 }
 
@@ -47,7 +47,7 @@ pub(super) fn plane(points: &[[f64; 3]]) -> Primitive {
 }
 
 /// The direction along which some vectors vary least.
-fn least_spread(vectors: &[[f64; 3]]) -> [f64; 3] {
+pub(crate) fn least_spread(vectors: &[[f64; 3]]) -> [f64; 3] {
     let (middle, mut sum) = (mean(vectors), Matrix3::zeros());
     for vector in vectors {
         let from = Vector3::from(plus(*vector, -1.0, middle));
@@ -59,7 +59,7 @@ fn least_spread(vectors: &[[f64; 3]]) -> [f64; 3] {
 }
 
 /// The circle of least squares through the points seen along an axis: its centre and radius.
-fn circle(points: &[[f64; 3]], axis: [f64; 3], centre: [f64; 3]) -> Option<([f64; 3], f64)> {
+pub(crate) fn circle(points: &[[f64; 3]], axis: [f64; 3], centre: [f64; 3]) -> Option<([f64; 3], f64)> {
     let [a, b] = across(axis);
     let from = |x: [f64; 3]| {
         let from = plus(x, -1.0, centre);
@@ -73,7 +73,7 @@ fn circle(points: &[[f64; 3]], axis: [f64; 3], centre: [f64; 3]) -> Option<([f64
 }
 
 /// The sphere of least squares.
-fn sphere(points: &[[f64; 3]], centre: [f64; 3]) -> Option<Primitive> {
+pub(crate) fn sphere(points: &[[f64; 3]], centre: [f64; 3]) -> Option<Primitive> {
     let from = |row: usize| plus(points[row], -1.0, centre);
     let matrix = DMatrix::from_fn(points.len(), 4, |row, k| if k < 3 { 2.0 * from(row)[k] } else { 1.0 });
     let right = DVector::from_fn(points.len(), |row, _| dot(from(row), from(row)));

@@ -6,11 +6,11 @@
 //! A face is divided where facets meet at more than 30°, so that sharp edges stay sharp.
 
 mod curved_face;
-mod fit;
+pub(crate) mod fit;
 mod quadric;
 mod recognition;
-mod smooth_parts;
+pub(crate) mod smooth_parts;
 
 pub use crate::mortar::Primitive;
-pub(crate) use curved_face::{CurvedFace, MiddlePoint};
+pub(crate) use curved_face::{CurvedFace, MiddlePoint, is_off};
 pub use recognition::{FacePart, face_parts};

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 const SMOOTH: f64 = 0.866_025_403_784_438_6;
 
 /// The part of every facet, numbered from zero, and their number.
-pub(super) fn smooth_parts(facets: &[Facet], normals: &[[f64; 3]]) -> (Vec<usize>, usize) {
+pub(crate) fn smooth_parts(facets: &[Facet], normals: &[[f64; 3]]) -> (Vec<usize>, usize) {
     let mut by_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
     for (number, facet) in facets.iter().enumerate() {
         edges(facet).for_each(|edge| by_edge.entry(edge).or_default().push(number));
@@ -43,14 +43,14 @@ pub(super) fn smooth_parts(facets: &[Facet], normals: &[[f64; 3]]) -> (Vec<usize
 }
 
 /// The edges of a facet, each with its smaller node first.
-pub(super) fn edges(facet: &Facet) -> impl Iterator<Item = [u32; 2]> + '_ {
+pub(crate) fn edges(facet: &Facet) -> impl Iterator<Item = [u32; 2]> + '_ {
     let corners = facet.corners();
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(&a, &b)| [a.min(b), a.max(b)])
 }
 
 /// The unit normal of a facet, zero where it has no area.
-pub(super) fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
+pub(crate) fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
     let area = doubled_area(corners);
     let size = length(area);
     if size > 0.0 { area.map(|x| x / size) } else { [0.0; 3] }

@@ -29,12 +29,8 @@ pub(crate) fn lattice_bending_rows(shape: &LatticeShape, block: Option<&Block>) 
     let (bases, lengths) = (shape.bases()?, shape.coordinates.lengths(block));
     let line = |axis: usize| {
         let places: Vec<f64> = bases[axis].greville().into_iter().map(|place| lengths[axis] * place).collect();
-        Line {
-            shares: shares(&places, lengths[axis]),
-            slopes: slopes(&places),
-            curvatures: curvatures(&places),
-            length: lengths[axis],
-        }
+        let [shares, slopes, curvatures] = bending_line(&places, lengths[axis]);
+        Line { shares, slopes, curvatures, length: lengths[axis] }
     };
     let lines: [Option<Line>; 3] = std::array::from_fn(|axis| (!shape.is_across(axis)).then(|| line(axis)));
     let along = |axis: usize, order: usize| match (&lines[axis], order) {
@@ -105,6 +101,12 @@ fn stacked(parts: &[Matrix], columns: usize) -> Matrix {
         first += part.nrows();
     }
     rows
+}
+
+/// Values, first and second divided differences between some places of a length, each times the root of the length that
+/// belongs to it.
+pub(crate) fn bending_line(places: &[f64], length: f64) -> [Matrix; 3] {
+    [shares(places, length), slopes(places), curvatures(places)]
 }
 
 /// Roots of the lengths that belong to the places, on the diagonal; of a single one, the whole length.

@@ -13,7 +13,8 @@ mod surface;
 
 pub use admissible::AdmissibleSet;
 pub use bending::bending_rows;
-pub(crate) use bending::lattice_bending_rows;
+pub(crate) use bending::{bending_line, lattice_bending_rows};
+pub(crate) use bspline::Basis;
 pub use coordinates::Coordinates;
 pub use lattice::{Directions, LatticeShape, NodeBound, ShapedFace};
 pub(crate) use map::{BodyMap, first_of};

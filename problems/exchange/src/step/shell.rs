@@ -1,21 +1,24 @@
 //! Faces, the open shell of the surface, and the closed shell of the solid between a plane and the surface.
 
 use super::entities::{Entities, Id, list, real, text};
-use super::spline::SplineHeights;
+use super::spline::{SplineHeights, SplinePatch};
 use crate::error::ExchangeError;
 
 /// Length below which points of the file are one, mm.
 const CONFUSION: f64 = 1e-7;
 
-/// The surface alone, as a face in an open shell.
-pub fn surface(name: &str, spline: &SplineHeights) -> String {
+/// Surfaces, each as a face with its name in an open shell of its own.
+pub fn surfaces<'a>(name: &str, faces: impl IntoIterator<Item = (&'a str, &'a SplinePatch)>) -> String {
     let mut entities = Entities::default();
-    let top = Rim::of_surface(&mut entities, spline);
-    let geometry = spline_surface(&mut entities, spline);
-    let loop_of_face = top.around(&mut entities);
-    let face = face(&mut entities, loop_of_face, geometry);
-    let shell = entities.add(format_args!("OPEN_SHELL('',({face}))"));
-    let model = entities.add(format_args!("SHELL_BASED_SURFACE_MODEL('',({shell}))"));
+    let shell = |(name, spline): (&str, &SplinePatch)| {
+        let rim = Rim::of_surface(&mut entities, spline);
+        let geometry = spline_surface(&mut entities, spline);
+        let path = rim.around(&mut entities);
+        let face = face(&mut entities, name, path, geometry);
+        entities.add(format_args!("OPEN_SHELL({},({face}))", text(name)))
+    };
+    let shells: Vec<Id> = faces.into_iter().map(shell).collect();
+    let model = entities.add(format_args!("SHELL_BASED_SURFACE_MODEL('',{})", list(shells)));
     product(&mut entities, name, "MANIFOLD_SURFACE_SHAPE_REPRESENTATION", model);
     entities.file(name)
 }
@@ -25,23 +28,24 @@ pub fn surface(name: &str, spline: &SplineHeights) -> String {
 /// # Errors
 /// [`ExchangeError::Thickness`] for a control height that does not lie above the plane.
 pub fn solid(name: &str, spline: &SplineHeights, plane: f64) -> Result<String, ExchangeError> {
-    let [n1, n2] = spline.counts();
-    for [x1, x2, height] in (0..n1).flat_map(|i| (0..n2).map(move |j| spline.point(i, j))) {
+    let patch = spline.patch();
+    let [n1, n2] = patch.counts();
+    for [x1, x2, height] in (0..n1).flat_map(|i| (0..n2).map(move |j| patch.point(i, j))) {
         if height <= plane {
             return Err(ExchangeError::Thickness { x1, x2, height, plane });
         }
     }
     let mut entities = Entities::default();
-    let (bottom, top) = (Rim::of_plane(&mut entities, spline.ends(), plane), Rim::of_surface(&mut entities, spline));
+    let (bottom, top) = (Rim::of_plane(&mut entities, spline.ends(), plane), Rim::of_surface(&mut entities, patch));
     let uprights: [Id; 4] =
         std::array::from_fn(|corner| straight(&mut entities, &bottom.corners[corner], &top.corners[corner]));
-    let surface = spline_surface(&mut entities, spline);
+    let surface = spline_surface(&mut entities, patch);
     let above = top.around(&mut entities);
-    let mut faces = vec![face(&mut entities, above, surface)];
+    let mut faces = vec![face(&mut entities, "", above, surface)];
     let down = entities.frame([0.0, 0.0, plane], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
     let ground = entities.add(format_args!("PLANE('',{down})"));
     let below = bottom.around_from_below(&mut entities);
-    faces.push(face(&mut entities, below, ground));
+    faces.push(face(&mut entities, "", below, ground));
     for side in 0..4 {
         let next = (side + 1) % 4;
         let path =
@@ -50,7 +54,7 @@ pub fn solid(name: &str, spline: &SplineHeights, plane: f64) -> Result<String, E
         let (outward, along) = SIDES[side];
         let frame = entities.frame(bottom.corners[side].place, outward, along);
         let wall = entities.add(format_args!("PLANE('',{frame})"));
-        faces.push(face(&mut entities, path, wall));
+        faces.push(face(&mut entities, "", path, wall));
     }
     let shell = entities.add(format_args!("CLOSED_SHELL('',{})", list(faces)));
     let body = entities.add(format_args!("MANIFOLD_SOLID_BREP('',{shell})"));
@@ -80,8 +84,8 @@ impl Corner {
     }
 }
 
-/// The four corners of a face, from that with the least coordinates on, and the edges from each to the next:
-/// counterclockwise from above.
+/// The four corners of a face, from that with the least parameters on, and the edges from each to the next:
+/// counterclockwise seen from where the normal points to.
 struct Rim {
     corners: [Corner; 4],
     edges: [Id; 4],
@@ -94,7 +98,7 @@ impl Rim {
         Self { corners, edges }
     }
 
-    fn of_surface(entities: &mut Entities, spline: &SplineHeights) -> Self {
+    fn of_surface(entities: &mut Entities, spline: &SplinePatch) -> Self {
         let [n1, n2] = spline.counts();
         let corners = [[0, 0], [n1 - 1, 0], [n1 - 1, n2 - 1], [0, n2 - 1]]
             .map(|[i, j]| Corner::new(entities, spline.point(i, j)));
@@ -124,7 +128,7 @@ impl Rim {
         Self { corners, edges }
     }
 
-    /// The path around, counterclockwise from above.
+    /// The path around, counterclockwise seen from where the normal points to.
     fn around(&self, entities: &mut Entities) -> Id {
         path_around(entities, self.edges.map(|edge| (edge, true)))
     }
@@ -160,12 +164,12 @@ fn path_around(entities: &mut Entities, edges: [(Id, bool); 4]) -> Id {
 }
 
 /// A face on a surface whose normal points outwards.
-fn face(entities: &mut Entities, path: Id, surface: Id) -> Id {
+fn face(entities: &mut Entities, name: &str, path: Id, surface: Id) -> Id {
     let bound = entities.add(format_args!("FACE_OUTER_BOUND('',{path},.T.)"));
-    entities.add(format_args!("ADVANCED_FACE('',({bound}),{surface},.T.)"))
+    entities.add(format_args!("ADVANCED_FACE({},({bound}),{surface},.T.)", text(name)))
 }
 
-fn spline_surface(entities: &mut Entities, spline: &SplineHeights) -> Id {
+fn spline_surface(entities: &mut Entities, spline: &SplinePatch) -> Id {
     let [n1, n2] = spline.counts();
     let row = |i: usize, entities: &mut Entities| list((0..n2).map(|j| entities.point(spline.point(i, j))));
     let rows: Vec<String> = (0..n1).map(|i| row(i, entities)).collect();

@@ -45,7 +45,7 @@ fn skin(problem: &ContactProblem, body: usize, positions: &Positions) -> Result<
 fn written(name: String, what: &str, triangles: &[Triangle]) -> Result<OutputFile, Failure> {
     let (count, content) = (triangles.len(), stl(triangles).map_err(failure)?);
     let what = format!("{what}: {count} triangles between the nodes of the mesh");
-    Ok(OutputFile { name, content, what, triangles: Some(count) })
+    Ok(OutputFile { triangles: Some(count), ..OutputFile::new(name, content, what) })
 }
 
 /// Faces as triangles between nodes at some positions.
@@ -114,7 +114,7 @@ fn files(
         let name = if body.name == "body" { "lower" } else { &body.name };
         let (nodes, cells) = (mesh.node_count(), mesh.cell_count());
         let what = format!("the mesh of the {name} body in this shape: {nodes} nodes, {cells} cells, mm");
-        Ok(OutputFile { name: body_file(&problem.scene, number, ending), content, what, triangles: None })
+        Ok(OutputFile::new(body_file(&problem.scene, number, ending), content, what))
     };
     problem.scene.bodies.iter().enumerate().filter(|(_, body)| body.shape.is_some()).map(file).collect()
 }

@@ -8,16 +8,17 @@ mod mesh;
 pub mod options;
 mod run;
 mod shape;
+mod surfaces;
 
 use crate::commands::controls::{self, Layout};
-use crate::commands::export::files::{Origin, OutputFile};
+use crate::commands::export::files::{FaceRecord, Origin, OutputFile};
 use crate::commands::export::options::ExportOptions;
 use crate::commands::export::run::KeptRun;
 use crate::commands::export::shape::Block;
-use crate::commands::failure::{Failure, refused};
+use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::numbers::number;
+use crate::commands::numbers::{number, rounded};
 use crate::commands::scene_difference::Difference;
 use contact::equilibrium::ContactProblem;
 use nonsmooth::Vector;
@@ -34,6 +35,9 @@ struct ExportJson {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     differences: Vec<String>,
     files: Vec<FileJson>,
+    /// Faces that no STEP file holds, each with the reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    left_out: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -43,6 +47,8 @@ struct FileJson {
     bytes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     triangles: Option<usize>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    faces: Vec<FaceRecord>,
 }
 
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
@@ -66,7 +72,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     // What no state is computed for is no part either.
     problem.rows(&problem.positions(controls.as_slice())?)?;
     let block = Block::of(&problem.scene);
-    let files = files(&problem, block, controls.as_slice(), options)?;
+    let (files, left_out) = files(&problem, block, controls.as_slice(), options)?;
     // The folder is touched when all that it will hold is there.
     let path = arguments.files.out.as_deref().unwrap_or(Path::new(""));
     let bytes = files.iter().map(|file| file.content.len() as u64).sum();
@@ -76,12 +82,14 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         holds: file.what.clone(),
         bytes: file.content.len(),
         triangles: file.triangles,
+        faces: file.faces.clone(),
     };
     let result = ExportJson {
         folder: path.display().to_string(),
         shape: origin,
         differences: differences.iter().map(Difference::to_string).collect(),
         files: files.iter().map(describe).collect(),
+        left_out,
     };
     let text = arguments.printed(result.to_string(), json(&result)?);
     printed_with_files(text, arguments.json, Some(&folder), |folder| {
@@ -92,24 +100,31 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     })
 }
 
-/// All files that the options ask for.
+/// All files that the options ask for, and the faces that no STEP file holds, each with the reason.
 fn files(
     problem: &ContactProblem,
     block: Option<Block<'_>>,
     controls: &[f64],
     options: &ExportOptions,
-) -> Result<Vec<OutputFile>, Failure> {
+) -> Result<(Vec<OutputFile>, Vec<String>), Failure> {
     let written = controls::written(controls, Layout::of(&problem.scene))?;
     let what = "the controls; --controls and --start-controls take the file";
     let mut files = vec![OutputFile::text("controls.json", written, what)];
     if options.stl || options.is_free() {
         files.extend(mesh::triangles(problem, controls)?);
     }
+    let mut left_out = Vec::new();
     match block {
         Some(block) => files.extend(of_block(block, controls, options)?),
-        None if options.step => {
-            let allowed = "for heights of a face of the only optimized block; every shape has --stl and --msh";
-            refused("--step", allowed)?;
+        None if options.step || options.is_free() => {
+            let surfaces;
+            (surfaces, left_out) = surfaces::files(problem, controls)?;
+            if options.step && surfaces.is_empty() {
+                let why =
+                    if left_out.is_empty() { "no face moves with the controls".into() } else { left_out.join("; ") };
+                return Err(Failure::Input(format!("--step: no face has a B-spline surface: {why}")));
+            }
+            files.extend(surfaces);
         }
         None => {}
     }
@@ -129,15 +144,12 @@ fn files(
     if options.friction_problem {
         files.extend(friction::matrices(problem, controls)?);
     }
-    Ok(files)
+    Ok((files, left_out))
 }
 
 /// The files that only heights of a face of a block have.
 fn of_block(block: Block<'_>, controls: &[f64], options: &ExportOptions) -> Result<Vec<OutputFile>, Failure> {
     let mut files = Vec::new();
-    if options.step {
-        block.check_solid()?;
-    }
     if options.step || options.is_free() {
         files.extend(shape::splines(block, controls)?);
     }
@@ -162,6 +174,16 @@ impl fmt::Display for ExportJson {
         for difference in &self.differences {
             writeln!(f, "note:        another friction problem than in the run: {difference}")?;
         }
-        self.files.iter().try_for_each(|file| writeln!(f, "{:<24} {}", file.file, file.holds))
+        for file in &self.files {
+            writeln!(f, "{:<24} {}", file.file, file.holds)?;
+            for FaceRecord { face, nodes, control_points: [n1, n2], distance, angle, .. } in &file.faces {
+                let [distance, angle] = [distance, angle].map(|value| rounded(*value, 2));
+                writeln!(
+                    f,
+                    "  {face:<22} {n1} x {n2} control points, {nodes} nodes within {distance} mm, normals of facets within {angle}°"
+                )?;
+            }
+        }
+        self.left_out.iter().try_for_each(|reason| writeln!(f, "note:        not in a STEP file: {reason}"))
     }
 }

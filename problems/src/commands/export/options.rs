@@ -16,11 +16,12 @@ pub struct ExportOptions {
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
     /// Bodies and contact faces as triangles between the nodes of their meshes. Without one of --stl, --step, --csv,
-    /// --msh, --vtu, --inp, --friction-problem, triangles, STEP and tables are written, or for a mesh --stl, --csv,
-    /// --msh and --vtu.
+    /// --msh, --vtu, --inp, --friction-problem, triangles, STEP and tables are written, for a mesh --msh and --vtu
+    /// besides.
     #[arg(long)]
     pub stl: bool,
-    /// The B-spline surface, and the body as a solid, for CAD systems.
+    /// For CAD systems: the B-spline surface of a block and its body as a solid; of a mesh, each face that moves with
+    /// the controls as a B-spline surface fitted to its nodes.
     #[arg(long)]
     pub step: bool,
     /// Tables: the change of shape (points, normals, amounts to remove), and the heights of the surface of a block.

@@ -3,7 +3,6 @@
 use crate::commands::export::files::{OutputFile, body_file};
 use crate::commands::failure::Failure;
 use crate::commands::scene_words;
-use contact::error::SceneError;
 use contact::scene::{self, CounterSurface, Scene};
 use contact::shape::{LatticeShape, ShapedFace};
 use exchange::ExchangeError;
@@ -31,25 +30,12 @@ impl<'a> Block<'a> {
         Some(Self { scene, body, block, shape })
     }
 
-    /// The height of the plane below an optimized top, mm; none of other blocks, which a STEP file does not hold.
+    /// The height of the plane below an optimized top, mm; none of other blocks, of which there is no solid.
     fn base(&self) -> Option<f64> {
         match (self.shape.face(), &self.block.bottom) {
             (Some(ShapedFace::Top), CounterSurface::Plane { height }) => Some(*height),
             _ => None,
         }
-    }
-
-    /// Refuses a block that a STEP file does not hold as a solid.
-    ///
-    /// # Errors
-    /// [`SceneError::OutOfRange`] naming the option.
-    pub fn check_solid(&self) -> Result<(), SceneError> {
-        if self.base().is_some() {
-            return Ok(());
-        }
-        let allowed = "for an optimized top over a plane bottom; --stl and --msh write every body";
-        let value = format!("given for {}", scene_words::body(&self.scene.bodies[self.body].name));
-        Err(SceneError::out_of_range("--step", value, allowed))
     }
 }
 
@@ -60,9 +46,9 @@ impl<'a> Block<'a> {
 pub fn splines(block: Block<'_>, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
     let (scene, surface) = (block.scene, block.shape.surface()?);
     let knots = surface.knots().map(<[f64]>::to_vec);
-    let spline = SplineHeights::new(surface.degrees(), knots, block.block.size, controls.to_vec()).map_err(failure)?;
-    let spline = spline.at(block.block.corner);
-    let face = step::surface(&scene.name, &spline);
+    let rectangle = (block.block.corner, block.block.size);
+    let spline = SplineHeights::new(surface.degrees(), knots, rectangle, controls).map_err(failure)?;
+    let face = step::surfaces(&scene.name, [("", spline.patch())]);
     let what = "the optimized surface as an exact B-spline face";
     let mut files = vec![OutputFile::text("surface.step", face, what)];
     if let Some(plane) = block.base() {
