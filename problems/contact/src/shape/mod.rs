@@ -16,6 +16,7 @@ pub use bending::bending_rows;
 pub(crate) use bending::lattice_bending_rows;
 pub use coordinates::Coordinates;
 pub use lattice::{Directions, LatticeShape, NodeBound, ShapedFace};
+pub(crate) use lattice_map::mean_rows;
 pub(crate) use map::{BodyMap, first_of};
 pub use map::{Positions, ShapeMap, Velocities};
 pub use refinement::{CoarseNet, coarse_net};

@@ -6,7 +6,7 @@ mod files;
 mod friction;
 mod mesh;
 pub mod options;
-mod run;
+pub mod run;
 mod shape;
 
 use crate::commands::controls::{self, Layout};

@@ -19,6 +19,7 @@ mod tables;
 pub use bodies::{MAX_LIFT as LIFT, Relief, apart};
 pub use contact_surface::ContactSurface;
 pub use folder::VTK;
-pub use sections::{export_command, found_label};
+pub use sections::{export_command, found_label, origin};
 pub use skin::{Skin, extent, faces_by_names};
 pub use solved_page::solved_page;
+pub use stamp::stamp;

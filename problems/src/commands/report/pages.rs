@@ -9,6 +9,7 @@ use crate::commands::report::sections::{export_command, limits, pictures};
 use crate::commands::scene_words::{friction, mesh};
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
+use crate::commands::tolerance::form_error;
 use contact::equilibrium::StageSeconds;
 use contact::scene::{self, BodyScene};
 use contact::shape::LatticeShape;
@@ -33,6 +34,7 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
         Block::Listing { title: "The command that writes STL, STEP and CSV".into(), text: export_command(folder) };
     sections.extend(controls(objective, shapes[1].controls.as_slice()));
     sections.extend([Section::new("Export", vec![command]), seconds(&shapes[1])]);
+    sections.push(form_error::section(folder, shapes[1].controls.as_slice()));
     page(objective, &what, facts.lead.join(". ") + ".", sections)
 }
 
