@@ -109,7 +109,7 @@ pub fn with_section(html: &str, section: &Section) -> Option<String> {
 }
 
 /// The heading of a section with its pieces.
-fn headed(section: &Section) -> Markup {
+pub(super) fn headed(section: &Section) -> Markup {
     html! {
         h2 { (section.title) }
         @for block in &section.blocks { (block.markup()) }

@@ -1,6 +1,6 @@
 //! `export`: a shape as files for other programs. Nothing is solved for it.
 
-mod change;
+pub mod change;
 mod deck;
 mod files;
 mod friction;

@@ -63,6 +63,23 @@ pub fn face_facts(cases: &[LookedCase<'_>]) -> Result<Vec<Fact>, Failure> {
     Ok(facts)
 }
 
+/// Bodies with their materials, and faces on which something acts, with what: a row each.
+pub fn acting(cases: &[LookedCase<'_>]) -> Vec<Vec<String>> {
+    let (first, mut rows) = (&cases[0], Vec::new());
+    for (index, body) in first.problem.bodies.iter().enumerate() {
+        let materials = by_case(cases, |case| of_volumes(&case.problem.scene.bodies[index]));
+        rows.push(vec![scene_words::body(&body.name), materials.join("; ")]);
+        for (face, own) in body.mesh.faces() {
+            let area: f64 = own.iter().map(|face| body.mesh.face_area(*face, &first.positions[index])).sum();
+            let roles = by_case(cases, |case| roles(&case.problem.scene, index, face, area));
+            if !roles.is_empty() {
+                rows.push(vec![face.clone(), roles.join("; ")]);
+            }
+        }
+    }
+    rows
+}
+
 /// Elastic constants and body forces in words.
 fn of_volumes(body: &BodyScene) -> Vec<String> {
     let words = |place: &str, material: &Material| {

@@ -9,6 +9,7 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::summary::{Ended, all_warnings};
 use crate::commands::report::folder::ReportFolder;
 use crate::commands::report::sections::found_label;
+use crate::commands::report::summary::{self, SUMMARY};
 use crate::commands::report::{captions, gallery, pages, tables};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
@@ -35,6 +36,10 @@ pub fn write_optimization(
     if out.wanted().pictures {
         let figure = gallery::convergence(objective, report, &shapes[1]).map_err(Failure::computation)?;
         out.draw(figure, "objective of every evaluation, kinds and origins of steps", captions::COURSE)?;
+    }
+    if out.wanted().report {
+        let paper = summary::page(loaded, ended, facts, folder.path())?;
+        out.write(SUMMARY, &paper, "one page to print, for the one who decides")?;
     }
     out.finish(|parts| pages::optimization(parts, ended, facts, folder.path()), &all_warnings(report, ended.checks))
 }

@@ -14,6 +14,7 @@ mod solved_page;
 mod space;
 mod stamp;
 pub mod study;
+mod summary;
 mod tables;
 
 pub use bodies::{MAX_LIFT as LIFT, Relief, apart};
@@ -23,3 +24,4 @@ pub use sections::{export_command, found_label, origin};
 pub use skin::{Skin, extent, faces_by_names};
 pub use solved_page::solved_page;
 pub use stamp::stamp;
+pub use summary::SUMMARY;

@@ -91,6 +91,19 @@ impl FormError {
         format!("up to a form error of {allowed} mm, {what}{by}")
     }
 
+    /// What is allowed, in sentences.
+    pub fn short(&self) -> String {
+        let Self { amplitude, wavelength, samples, .. } = self;
+        let verdict = self.verdict();
+        let (first, rest) = verdict.split_at(1);
+        let [amplitude, wavelength] = [amplitude, wavelength].map(|length| number(*length));
+        format!(
+            "{}{rest}. By {samples} random shapes that deviate by at most {amplitude} mm along the normals of the shaped \
+             faces, in waves of {wavelength} mm; first derivatives rate them.",
+            first.to_uppercase()
+        )
+    }
+
     /// The first lines of a text.
     fn lead(&self) -> Vec<String> {
         let Self { scene, shape, amplitude, wavelength, .. } = self;
@@ -122,7 +135,7 @@ impl FormError {
     }
 
     fn words(&self) -> String {
-        let Self { amplitude, wavelength, samples, states, seed, .. } = self;
+        let Self { states, seed, .. } = self;
         let tight = self.rows.iter().any(|row| row.allowed.is_some_and(|allowed| allowed.amplitude == 0.0));
         let tight = if tight {
             " A limit that the shape attains allows no form error: to make room, tighten its bound by the difference \
@@ -130,18 +143,12 @@ impl FormError {
         } else {
             ""
         };
-        let verdict = self.verdict();
         format!(
-            "{}{}. {samples} random shapes (seed {seed}) deviate from this one by at most {} mm along the normals of the shaped \
-             faces, in waves of {} mm; first derivatives rate them. 95 %: what 95 % of the shapes are no worse than. Allowed: \
-             the amplitude up to which 95 % of the shapes keep the limit, or lose at most 5 % of the objective, or of its root \
-             where that is a pressure. {states} of the shapes were solved: the ten that are worst by one of the rows, and ten \
-             others; the model error is the largest difference of the first-order value from that of the state, over the largest \
-             change of a state.{tight}",
-            verdict[..1].to_uppercase(),
-            &verdict[1..],
-            number(*amplitude),
-            number(*wavelength),
+            "{} Seed {seed}. 95 %: what 95 % of the shapes are no worse than. Allowed: the amplitude up to which 95 % of the \
+             shapes keep the limit, or lose at most 5 % of the objective, or of its root where that is a pressure. {states} of \
+             the shapes were solved: the ten that are worst by one of the rows, and ten others; the model error is the largest \
+             difference of the first-order value from that of the state, over the largest change of a state.{tight}",
+            self.short()
         )
     }
 
@@ -165,6 +172,12 @@ pub fn section(folder: &Path, controls: &[f64]) -> Section {
         Some(found) => found.group().section(),
         None => Section::new(TITLE, vec![Block::Text(format!("Not computed. The command: {}", command(folder)))]),
     }
+}
+
+/// The section of a page that says no more than what is allowed.
+pub fn short_section(folder: &Path, controls: &[f64]) -> Section {
+    let words = || format!("Not computed. The command: {}", command(folder));
+    Section::new(TITLE, vec![Block::Text(known(folder, controls).map_or_else(words, |found| found.short()))])
 }
 
 /// What a folder says of the shape with these controls.

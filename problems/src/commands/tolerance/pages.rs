@@ -4,13 +4,13 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::Folder;
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::output::notice;
-use crate::commands::report::{origin, stamp};
+use crate::commands::report::{SUMMARY, origin, stamp};
 use crate::commands::tolerance::form_error::{FORM_ERROR, FormError, TITLE};
-use figures::page::{Page, with_section};
+use figures::page::{Block, Page, Section, with_section};
 use scene_file::read_text;
 
-/// The pages of an optimization that have the section.
-const PAGES: [&str; 1] = ["report.html"];
+/// Largest page that is read, bytes.
+const LARGEST_PAGE: u64 = 1 << 30;
 
 /// A page of its own.
 ///
@@ -32,12 +32,13 @@ pub fn page(found: &FormError, loaded: &LoadedScene) -> Result<String, Failure> 
 /// # Errors
 /// [`Failure`] of the files.
 pub fn renew(folder: &Folder, found: &FormError) -> Result<(), Failure> {
-    for name in PAGES {
+    let short = Section::new(TITLE, vec![Block::Text(found.short())]);
+    for (name, section) in [("report.html", found.group().section()), (SUMMARY, short)] {
         let path = folder.path().join(name);
         if !path.exists() {
             continue;
         }
-        match with_section(&read_text(&path, u64::MAX)?, &found.group().section()) {
+        match with_section(&read_text(&path, LARGEST_PAGE)?, &section) {
             Some(page) => folder.write(name, page)?,
             None => notice(&format!("{}: has no section {TITLE}; {FORM_ERROR} holds the result", path.display())),
         }
