@@ -113,10 +113,13 @@ pub fn changed_faces(problem: &ContactProblem, controls: &[f64]) -> Vec<ChangedF
     changed
 }
 
-/// The largest amounts to remove and to add, mm.
-pub fn largest(changed: &[ChangedFace]) -> [f64; 2] {
-    let amounts = || changed.iter().flat_map(|face| &face.nodes).map(|node| node.amount);
-    [amounts().fold(0.0, f64::max), amounts().map(|amount| -amount).fold(0.0, f64::max)]
+/// The largest amounts to remove and to add, mm, with the names of their faces.
+pub fn largest(changed: &[ChangedFace]) -> [(f64, &[String]); 2] {
+    let amounts = || changed.iter().flat_map(|face| face.nodes.iter().map(|node| (node.amount, face.names.as_slice())));
+    [1.0, -1.0].map(|sign| {
+        let own = amounts().map(|(amount, names)| (sign * amount, names));
+        own.fold((0.0, &[][..]), |most, next| if next.0 > most.0 { next } else { most })
+    })
 }
 
 /// The changed faces as a table.
@@ -134,7 +137,7 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
         }
     }
     let count: usize = changed.iter().map(|face| face.nodes.len()).sum();
-    let [removed, added] = largest(&changed);
+    let [removed, added] = largest(&changed).map(|(amount, _)| amount);
     let what = format!(
         "the change from the start at {count} points: at most {} mm to remove, {} mm to add",
         number(removed),

@@ -50,7 +50,7 @@ pub fn setup(cases: &[(&str, &ContactProblem)], controls: &[f64]) -> Result<Vec<
     Ok(std::iter::once(view).chain(Group::new("", face_facts(&cases)?).section().blocks).collect())
 }
 
-/// Bodies with their materials, and faces with what acts on them, a row each.
+/// Bodies with their materials, loads, contacts and supports, a row each.
 ///
 /// # Errors
 /// [`Failure`] for controls without a shape.

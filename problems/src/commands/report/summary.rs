@@ -25,13 +25,15 @@ use std::path::Path;
 /// The file of the page.
 pub const SUMMARY: &str = "summary.html";
 /// Rows of a table, and of a list: a sheet holds as many.
-const MAX_ROWS: usize = 8;
+const MAX_ROWS: usize = 6;
+/// Rows of the table of the part.
+const MAX_PART_ROWS: usize = 10;
 /// Warnings that a sheet has room for.
 const MAX_WARNINGS: usize = 3;
 /// Pictures of the change that a sheet has room for.
 const MAX_PICTURES: usize = 2;
 /// Characters of a cell: loads of many cases are long.
-const MAX_CELL: usize = 360;
+const MAX_CELL: usize = 240;
 
 /// The page of an optimization.
 ///
@@ -45,7 +47,7 @@ pub fn page(loaded: &LoadedScene, ended: &Ended<'_>, facts: &Facts, folder: &Pat
     let warnings: Vec<String> =
         all_warnings(&ended.last.report, ended.checks).iter().map(ToString::to_string).collect();
     let mut kept_limits = limits(&ended.shapes.each_ref(), None);
-    kept_limits.blocks.iter_mut().for_each(shorten);
+    kept_limits.blocks.iter_mut().for_each(|block| shorten(block, MAX_ROWS));
     let mut columns = vec![part(acting(&problems, controls)?), changes(problem, controls, folder)?];
     columns.push(form_error::short_section(folder, controls));
     columns.extend([assumed(loaded, problem), not_checked(loaded, ended)]);
@@ -74,12 +76,12 @@ fn cut(mut lines: Vec<String>, most: usize) -> Vec<String> {
 }
 
 /// Cuts the rows of a table, and texts in them, to what a sheet holds.
-fn shorten(block: &mut Block) {
+fn shorten(block: &mut Block, most: usize) {
     let Block::Table { rows, .. } = block else { return };
-    if rows.len() > MAX_ROWS {
-        let more = rows.len() - MAX_ROWS + 1;
-        rows.truncate(MAX_ROWS - 1);
-        rows.push(vec![format!("and {more} more in report.html"), String::new()]);
+    if rows.len() > most {
+        let more = rows.len() - most + 1;
+        rows.truncate(most - 1);
+        rows.push(vec![format!("and {more} more in report.html")]);
     }
     for cell in rows.iter_mut().flatten().filter(|cell| cell.chars().count() > MAX_CELL) {
         *cell = cell.chars().take(MAX_CELL).collect::<String>() + " … (all in report.html)";
@@ -104,24 +106,27 @@ fn gain(ended: &Ended<'_>) -> Section {
     let columns = vec!["start".to_owned(), found_label(&ended.last.report).to_owned()];
     let mut section = Group { title: "What was gained", columns, facts, words: String::new() }.section();
     section.blocks.truncate(1);
-    section.blocks.iter_mut().for_each(shorten);
+    section.blocks.iter_mut().for_each(|block| shorten(block, MAX_ROWS));
     section
 }
 
 /// The part with its materials, supports, contacts and loads.
 fn part(rows: Vec<Vec<String>>) -> Section {
-    let mut table = Block::table(["body or face", "material, or what acts there"], rows);
-    shorten(&mut table);
+    let mut table = Block::table(["body or face", "material, load, contact, support"], rows);
+    shorten(&mut table, MAX_PART_ROWS);
     Section::new("Part and loads", vec![table])
 }
 
 /// What is to be removed and added, with pictures.
 fn changes(problem: &ContactProblem, controls: &[f64], folder: &Path) -> Result<Section, Failure> {
     let changed = change::changed_faces(problem, controls);
-    let [removed, added] = change::largest(&changed).map(|amount| rounded(amount, 3));
+    let most = change::largest(&changed).map(|(amount, names)| {
+        let face = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
+        format!("{} mm{face}", rounded(amount, 3))
+    });
+    let [removed, added] = most;
     let words = format!(
-        "From the start: at most {removed} mm to remove, {added} mm to add, along the normals of the start. The table of all \
-         points: {}",
+        "From the start, along its normals: at most {removed} to remove, {added} to add. The table of all points: {}",
         export_command(folder)
     );
     let mut blocks = vec![Block::Text(words)];
