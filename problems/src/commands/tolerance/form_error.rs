@@ -3,7 +3,7 @@
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{SCENE, json, quoted};
-use crate::commands::numbers::{number, rounded};
+use crate::commands::numbers::{exact, rounded};
 use figures::page::{Block, Section};
 use scene_file::read_text;
 use serde::{Deserialize, Serialize};
@@ -19,6 +19,8 @@ const LARGEST_FILE: u64 = 1 << 24;
 pub const LOSS: f64 = 0.05;
 /// Share of the shapes that must keep within it.
 pub const SHARE: f64 = 0.95;
+/// Model error from which on the result is rough.
+const LARGEST_MODEL_ERROR: f64 = 0.2;
 /// Largest multiple of the amplitude that is looked at.
 pub const LARGEST_TIMES: f64 = 10.0;
 
@@ -65,7 +67,7 @@ pub struct FormError {
     /// Number of shapes that were solved.
     pub states: usize,
     pub rows: Vec<Row>,
-    /// Amplitude up to which 95 % of the shapes keep every limit and lose at most 5 % of the objective.
+    /// Amplitude up to which 95 % of the shapes keep the limits and lose at most 5 % of the objective.
     pub allowed: Allowed,
 }
 
@@ -86,7 +88,7 @@ impl FormError {
             return format!("no form error is allowed: without one, no room is left by {name}");
         }
         let (allowed, what) =
-            (self.allowed.words(), "95 % of the shapes keep every limit and lose at most 5 % of the objective");
+            (self.allowed.words(), "95 % of the shapes keep the limits and lose at most 5 % of the objective");
         let by = if self.allowed.or_more { String::new() } else { format!(" (decided by {name})") };
         format!("up to a form error of {allowed} mm, {what}{by}")
     }
@@ -96,18 +98,31 @@ impl FormError {
         let Self { amplitude, wavelength, samples, .. } = self;
         let verdict = self.verdict();
         let (first, rest) = verdict.split_at(1);
-        let [amplitude, wavelength] = [amplitude, wavelength].map(|length| number(*length));
+        let [amplitude, wavelength] = [amplitude, wavelength].map(|length| exact(*length));
         format!(
             "{}{rest}. By {samples} random shapes that deviate by at most {amplitude} mm along the normals of the shaped \
-             faces, in waves of {wavelength} mm; first derivatives rate them.",
-            first.to_uppercase()
+             faces, in waves of {wavelength} mm; first derivatives rate them.{}",
+            first.to_uppercase(),
+            self.caution()
         )
+    }
+
+    /// What is to be said where first derivatives say little.
+    fn caution(&self) -> String {
+        let errors = self.rows.iter().filter(|row| row.allowed.is_some()).filter_map(|row| row.model_error);
+        match errors.fold(0.0, f64::max) {
+            most if most <= LARGEST_MODEL_ERROR => String::new(),
+            most => {
+                let percent = rounded(100.0 * most, 2);
+                format!(" They are off by up to {percent} % of the change: take a smaller amplitude.")
+            }
+        }
     }
 
     /// The first lines of a text.
     fn lead(&self) -> Vec<String> {
         let Self { scene, shape, amplitude, wavelength, .. } = self;
-        let errors = format!("form errors of at most {} mm, waves of {} mm", number(*amplitude), number(*wavelength));
+        let errors = format!("form errors of at most {} mm, waves of {} mm", exact(*amplitude), exact(*wavelength));
         vec![format!("{scene}: {shape}, with {errors}"), self.verdict()]
     }
 
@@ -145,7 +160,8 @@ impl FormError {
         };
         format!(
             "{} Seed {seed}. 95 %: what 95 % of the shapes are no worse than. Allowed: the amplitude up to which 95 % of the \
-             shapes keep the limit, or lose at most 5 % of the objective, or of its root where that is a pressure. {states} of \
+             shapes keep the limit, or lose at most 5 % of the objective, or of its root where that is a pressure; volume, mass \
+             and equations are conditions of the optimization and decide nothing. {states} of \
              the shapes were solved: the ten that are worst by one of the rows, and ten others; the model error is the largest \
              difference of the first-order value from that of the state, over the largest change of a state.{tight}",
             self.short()

@@ -79,12 +79,12 @@ impl<'o> Measures<'o> {
         }
     }
 
-    /// Whether a row decides what is allowed: limits, and the objective or its root.
+    /// Whether a row decides what is allowed: limits of states, and the objective or its root.
     fn decides(&self, row: usize) -> bool {
         match &self.all[row] {
             Measured::Objective => !self.all.iter().any(|other| matches!(other, Measured::Root)),
-            // No shape that is made keeps an equation: it is a condition of the optimization.
-            Measured::Limit(_, Limit { side, .. }) => *side != LimitSide::Equal,
+            // Volume, mass and equations are conditions of the optimization: no shape that is made keeps them exactly.
+            Measured::Limit(_, limit) => limit.side != LimitSide::Equal && !limit.quantity.is_of_shape(),
             Measured::Root => true,
             Measured::Case(_) => false,
         }
@@ -171,7 +171,7 @@ impl<'o> Measures<'o> {
                 median: at(rank(0.5)),
                 percentile_95: at(rank(SHARE)),
                 worst: at(count - 1),
-                kept: limit.filter(|_| self.decides(row)).map(kept),
+                kept: limit.filter(|limit| limit.side != LimitSide::Equal).map(kept),
                 allowed: self.decides(row).then(|| allowed(rated.times.iter().map(|times| times[row]), amplitude)),
                 worst_state: worst_state.unwrap_or(self.nominal[row]),
                 model_error: (change > 0.0).then_some(difference / change),
