@@ -15,18 +15,18 @@ use rayon::prelude::*;
 const HALVINGS: usize = 20;
 
 /// A quantity that a row tells of.
-enum Measured {
+enum Measured<'o> {
     Objective,
     /// The root of Θ that is a pressure.
     Root,
     Case(usize),
-    Limit(usize, Limit),
+    Limit(usize, &'o Limit),
 }
 
 /// The rows of a table.
 pub struct Measures<'o> {
     objective: &'o ContactObjective,
-    all: Vec<Measured>,
+    all: Vec<Measured<'o>>,
     nominal: Vec<f64>,
 }
 
@@ -45,7 +45,7 @@ impl<'o> Measures<'o> {
         let mut all = vec![Measured::Objective];
         all.extend(objective.pressure_root(0.0).map(|_| Measured::Root));
         all.extend((0..cases).filter(|_| cases > 1).map(Measured::Case));
-        all.extend(objective.limits().cloned().enumerate().map(|(index, limit)| Measured::Limit(index, limit)));
+        all.extend(objective.limits().enumerate().map(|(index, limit)| Measured::Limit(index, limit)));
         let mut measures = Self { objective, all, nominal: Vec::new() };
         measures.nominal = measures.of_states(control, states);
         measures
@@ -61,7 +61,7 @@ impl<'o> Measures<'o> {
     }
 
     fn values(&self, of: &Predicted) -> Vec<f64> {
-        let value = |measured: &Measured| match measured {
+        let value = |measured: &Measured<'_>| match measured {
             Measured::Objective => of.value,
             Measured::Root => self.objective.pressure_root(of.value).map_or(f64::NAN, |root| root.value),
             Measured::Case(case) => of.weighted[*case],
@@ -151,7 +151,7 @@ impl<'o> Measures<'o> {
     pub fn rows(&self, rated: &Rated, amplitude: f64, states: &[(usize, Vec<f64>)]) -> Vec<Row> {
         let count = rated.values.len();
         let rank = |share: f64| ((share * count as f64).ceil() as usize).clamp(1, count) - 1;
-        let row = |(row, measured): (usize, &Measured)| {
+        let row = |(row, measured): (usize, &Measured<'_>)| {
             let order = self.order(rated, row);
             let at = |rank: usize| rated.values[order[rank]][row];
             let (quantity, unit, limit) = self.names(measured);
@@ -181,7 +181,7 @@ impl<'o> Measures<'o> {
     }
 
     /// Name, unit and limit of a row.
-    fn names<'m>(&self, measured: &'m Measured) -> (String, String, Option<&'m Limit>) {
+    fn names<'m>(&self, measured: &Measured<'m>) -> (String, String, Option<&'m Limit>) {
         let unit = raised(&self.objective.unit());
         match measured {
             Measured::Objective => ("objective Θ".into(), unit, None),
@@ -191,7 +191,7 @@ impl<'o> Measures<'o> {
             }
             Measured::Case(case) => (format!("{}: measure", self.objective.cases().name(*case)), unit, None),
             Measured::Limit(_, limit) => {
-                let words = LimitedValue { limit: limit.clone(), value: limit.bound }.words();
+                let words = LimitedValue { limit: Limit::clone(limit), value: limit.bound }.words();
                 (format!("limit: {words}"), String::new(), Some(limit))
             }
         }
