@@ -59,7 +59,8 @@ fn first_derivatives_are_those_of_states() {
 }
 
 /// Waves that are much longer than the block move its upper face as a whole. A block of height H = 5 on a rigid
-/// support, pressed to the height 4.99, has V/V₀ = 1 ± a/H and the pressure E (1 − 4.99/H), with the derivative 4.99E/H².
+/// support, pressed to the height 4.99, has V/V₀ = 1 ± a/H and the pressure E (1 − 4.99/H), with the derivative
+/// 4.99 E/H².
 #[test]
 fn long_waves_have_closed_forms() {
     let folder = scratch();

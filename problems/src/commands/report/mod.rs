@@ -24,4 +24,3 @@ pub use sections::{export_command, found_label, origin};
 pub use skin::{Skin, extent, faces_by_names};
 pub use solved_page::solved_page;
 pub use stamp::stamp;
-pub use summary::SUMMARY;

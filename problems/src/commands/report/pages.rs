@@ -2,11 +2,11 @@
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::{Facts, Group};
+use crate::commands::folder::SUMMARY;
 use crate::commands::numbers::{number, rounded};
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{export_command, limits, pictures};
-use crate::commands::report::summary::SUMMARY;
 use crate::commands::scene_words::{friction, mesh};
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};

@@ -1,5 +1,5 @@
-//! The page for the one who decides: part, loads, gain, limits, amounts to remove, form error, what was assumed and what
-//! was not checked, on one sheet.
+//! The page for the one who decides: part, loads, gain, limits, amounts to remove, form error, what was assumed and
+//! what was not checked, on one sheet.
 
 use crate::commands::export::change::{self, ChangedFace};
 use crate::commands::facts::{Fact, Facts, Group};
@@ -22,8 +22,6 @@ use scene_file::optimization::Part;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The file of the page.
-pub const SUMMARY: &str = "summary.html";
 /// Rows of a table, and of a list: a sheet holds as many.
 const MAX_ROWS: usize = 6;
 /// Rows of the table of the part.

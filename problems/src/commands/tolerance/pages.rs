@@ -1,10 +1,10 @@
 //! The section on form errors: of a page of its own, and of the pages of an optimization.
 
 use crate::commands::failure::Failure;
-use crate::commands::folder::Folder;
+use crate::commands::folder::{Folder, SUMMARY};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::output::notice;
-use crate::commands::report::{SUMMARY, origin, stamp};
+use crate::commands::report::{origin, stamp};
 use crate::commands::tolerance::form_error::{FORM_ERROR, FormError, TITLE};
 use figures::page::{Block, Page, Section, with_section};
 use scene_file::read_text;
