@@ -206,6 +206,8 @@ fn what_means_nothing_is_refused() {
     refused(&[&all[..], &["--samples", "19"]].concat(), &["--samples", "20 to 100000"]);
     refused(&[&all[..], &["--run", "x", "--controls", "y"]].concat(), &["--controls is allowed without --run"]);
     refused(&[&all[..], &["--run", "x", "--out", "y"]].concat(), &["--out is allowed without --run"]);
+    let words = ["--amplitude 5: ", "is inverted", "a smaller one is needed"];
+    refused(&["--amplitude", "5", "--wavelength", "10"], &words);
     // Four bricks along 10 mm.
     let words =
         ["wavelength of the form error = 9.9", "at least 10.0000 mm: 4 facets of the shaped faces, 2.5000 mm each"];

@@ -103,27 +103,24 @@ impl FormError {
             "{}{rest}. By {samples} random shapes that deviate by at most {amplitude} mm along the normals of the shaped \
              faces, in waves of {wavelength} mm; first derivatives rate them.{}",
             first.to_uppercase(),
-            self.caution()
+            self.caution().map_or_else(String::new, |words| format!(" Caution: {words}."))
         )
     }
 
     /// What is to be said where first derivatives say little.
-    fn caution(&self) -> String {
+    fn caution(&self) -> Option<String> {
         let errors = self.rows.iter().filter(|row| row.allowed.is_some()).filter_map(|row| row.model_error);
-        match errors.fold(0.0, f64::max) {
-            most if most <= LARGEST_MODEL_ERROR => String::new(),
-            most => {
-                let percent = rounded(100.0 * most, 2);
-                format!(" They are off by up to {percent} % of the change: take a smaller amplitude.")
-            }
-        }
+        let most = Some(errors.fold(0.0, f64::max)).filter(|most| *most > LARGEST_MODEL_ERROR)?;
+        let percent = rounded(100.0 * most, 2);
+        Some(format!("first derivatives are off by up to {percent} % of the largest change: take a smaller amplitude"))
     }
 
     /// The first lines of a text.
     fn lead(&self) -> Vec<String> {
         let Self { scene, shape, amplitude, wavelength, .. } = self;
         let errors = format!("form errors of at most {} mm, waves of {} mm", exact(*amplitude), exact(*wavelength));
-        vec![format!("{scene}: {shape}, with {errors}"), self.verdict()]
+        let lines = [format!("{scene}: {shape}, with {errors}"), self.verdict()];
+        lines.into_iter().chain(self.caution()).collect()
     }
 
     /// The table with what is to be said about it.

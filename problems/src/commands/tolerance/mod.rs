@@ -70,7 +70,13 @@ fn form_error(
     let rated = measures.rate(&model, &shapes);
     let start = objective.cases().warm_start(&states);
     let solve = |index: usize| {
-        let states: CaseStates = objective.cases().solve(&shapes[index], Some(&start), Accuracy::TIGHTEST)?;
+        let states = objective.cases().solve(&shapes[index], Some(&start), Accuracy::TIGHTEST);
+        let states: CaseStates = states.map_err(|error| match Failure::from(error) {
+            Failure::Input(reason) => {
+                Failure::Input(format!("--amplitude {}: {reason}; a smaller one is needed", options.amplitude))
+            }
+            other => other,
+        })?;
         Ok((index, measures.of_states(&shapes[index], &states)))
     };
     let chosen = measures.chosen(&rated, STATES);
