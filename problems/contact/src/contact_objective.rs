@@ -76,6 +76,11 @@ impl ContactObjective {
         Ok(Self { composed: CompositeObjective::new(map, cost), bounds, told, kinds })
     }
 
+    /// The limits on their meshes, in the order of the constraints of the optimizer.
+    pub(crate) fn bounds(&self) -> &[Bound] {
+        &self.bounds
+    }
+
     /// The limits with their cases, in the order of the constraints of the optimizer.
     pub fn limits(&self) -> impl Iterator<Item = &Limit> {
         self.bounds.iter().map(|bound| &bound.limit)

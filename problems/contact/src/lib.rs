@@ -67,6 +67,7 @@ pub mod direct;
 pub mod equilibrium;
 pub mod error;
 pub mod fields;
+mod first_order;
 pub mod formula;
 pub mod friction_problem;
 pub mod linear;
@@ -89,4 +90,5 @@ pub mod surfaces;
 pub mod tfeti;
 mod work_estimate;
 
+pub use first_order::{FirstOrderModel, Predicted, Slope};
 pub use work_estimate::WorkEstimate;

@@ -99,6 +99,23 @@ impl Section {
     }
 }
 
+/// A written page with another section in place of that with the same heading; none if it has none.
+pub fn with_section(html: &str, section: &Section) -> Option<String> {
+    let heading = headed(section).into_string();
+    let (title, _) = heading.split_once("</h2>")?;
+    let start = html.find(&format!("{title}</h2>"))?;
+    let length = html[start..].find("</section>")?;
+    Some(format!("{}{heading}{}", &html[..start], &html[start + length..]))
+}
+
+/// The heading of a section with its pieces.
+pub(super) fn headed(section: &Section) -> Markup {
+    html! {
+        h2 { (section.title) }
+        @for block in &section.blocks { (block.markup()) }
+    }
+}
+
 impl Block {
     /// A table from anything that reads as text.
     pub fn table<H: ToString, C: ToString>(
@@ -137,8 +154,7 @@ impl Page {
                     nav { @for (index, section) in self.sections.iter().enumerate() { a href={ "#part" (index) } { (section.title) } " " } }
                     @for (index, section) in self.sections.iter().enumerate() {
                         section id={ "part" (index) } {
-                            h2 { (section.title) }
-                            @for block in &section.blocks { (block.markup()) }
+                            (headed(section))
                         }
                     }
                     @if self.sections.iter().flat_map(|section| &section.blocks).any(Block::is_space) {
@@ -282,6 +298,17 @@ mod tests {
                 .html();
         let expected = format!("<tr><td>4</td><td class=\"long\" colspan=\"2\">{reason}</td></tr>");
         assert!(html.contains("<tr><td>1</td><td>2</td><td>3</td></tr>") && html.contains(&expected), "{html}");
+    }
+
+    #[test]
+    fn a_section_of_a_written_page_is_replaced_by_its_heading() {
+        let section = |title: &str, text: &str| Section::new(title, vec![Block::Text(text.into())]);
+        let page = |text: &str| {
+            let sections = vec![section("a", "b"), section("x < y", text), section("c", "<h2>x &lt; y</h2>")];
+            Page { sections, ..Page::default() }.html()
+        };
+        assert_eq!(with_section(&page("old"), &section("x < y", "new")), Some(page("new")));
+        assert_eq!(with_section(&page("old"), &section("y", "new")), None);
     }
 
     #[test]

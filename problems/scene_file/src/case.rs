@@ -12,7 +12,7 @@ use contact::communication::InProcess;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::ContactShape;
 use contact::cost::{Limit, PressureMeasure, Quantity, Reported};
-use contact::equilibrium::ContactProblem;
+use contact::equilibrium::{ContactProblem, FormErrors};
 use contact::error::SceneError;
 use contact::load_cases::{Bound, CasesCost, LoadCase, Over, Told, WeightedCase};
 use contact::memory;
@@ -142,7 +142,7 @@ impl Case {
         let Self { preconditioner, clusters, solver: kind, .. } = *self;
         let scenes = self.cases.iter().map(|case| case.scene.clone());
         let cases = self.cases.len();
-        scenes.map(move |scene| SolverPlan { scene, kind, preconditioner, clusters, wanted, cases })
+        scenes.map(move |scene| SolverPlan { scene, kind, preconditioner, clusters, form_errors: None, wanted, cases })
     }
 
     /// Θ over all load cases, with solvers that are prepared in some processes.
@@ -150,12 +150,34 @@ impl Case {
     /// # Errors
     /// As [`Processes::solver`] and [`ContactObjective::of_cases`].
     pub fn prepared(&self, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, SceneError> {
+        self.objective_of(self.plans(wanted), processes)
+    }
+
+    /// As [`prepared`](Self::prepared), with form errors in place of the controls, and Jacobians. The bending that
+    /// fairness adds to Θ is left out: it is one of the controls.
+    ///
+    /// # Errors
+    /// As [`prepared`](Self::prepared), and as [`FormErrors`] says.
+    pub fn with_form_errors(&self, errors: &FormErrors, processes: &Processes) -> Result<ContactObjective, SceneError> {
+        let around = |plan: SolverPlan| SolverPlan {
+            scene: plan.scene.with_shapes(|shape| shape.fairness = 0.0),
+            form_errors: Some(errors.clone()),
+            ..plan
+        };
+        self.objective_of(self.plans(Wanted::Jacobians).map(around), processes)
+    }
+
+    fn objective_of(
+        &self,
+        plans: impl Iterator<Item = SolverPlan>,
+        processes: &Processes,
+    ) -> Result<ContactObjective, SceneError> {
         let case = |(case, plan): (&CaseScene, SolverPlan)| {
             let shape = ContactShape::by(processes.solver(plan)?);
             let quantity = self.objective.clone();
             Ok(LoadCase { name: case.name.clone(), weight: case.weight, shape, quantity })
         };
-        let cases = self.cases.iter().zip(self.plans(wanted)).map(case).collect::<Result<_, SceneError>>()?;
+        let cases = self.cases.iter().zip(plans).map(case).collect::<Result<_, SceneError>>()?;
         ContactObjective::of_cases(cases, self.over, &self.limits, &self.reports)
     }
 

@@ -5,6 +5,7 @@ use crate::commands::failure::{Failure, refused};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_options::{SceneChanges, SceneOptions, options};
 use crate::commands::study::varied::Varied;
+use crate::commands::tolerance::options::ToleranceOptions;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, FromArgMatches, Subcommand, ValueEnum};
@@ -39,6 +40,8 @@ pub enum Command {
     Evaluate,
     /// Taylor test of the subgradient at one shape
     Verify,
+    /// Objective and limits over random form errors of the shaped faces: how good the shape must be made
+    Tolerance,
     /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR
     Recheck,
     /// Write a shape as files for other programs (STL, STEP, CSV, matrices); needs --out
@@ -91,10 +94,12 @@ groups! {
     variation: Variation, of Study;
     /// What is exported.
     export: ExportOptions, of Export;
+    /// The form errors of a shape.
+    tolerance: ToleranceOptions, of Tolerance;
     /// What changes in the scene.
-    scene: SceneChanges, of Optimize | Compare | Study | Look | Evaluate | Verify | Recheck | Export;
+    scene: SceneChanges, of Optimize | Compare | Study | Look | Evaluate | Verify | Tolerance | Recheck | Export;
     /// The shape that is looked at.
-    shape: Shape, of Study | Look | Evaluate | Verify | Export;
+    shape: Shape, of Study | Look | Evaluate | Verify | Tolerance | Export;
     /// How far that shape is off.
     error: HeightError, of Study | Evaluate;
     /// How the scene changes the optimizer.
@@ -102,7 +107,7 @@ groups! {
     /// Where an optimization begins.
     course: Course, of Optimize | Compare | Study;
     /// Where files go.
-    files: Files, of Optimize | Compare | Study | Look | Evaluate | Verify | Export;
+    files: Files, of Optimize | Compare | Study | Look | Evaluate | Verify | Tolerance | Export;
     /// A series of fields.
     series: Series, of Optimize;
     /// What is computed besides at a state.
@@ -110,7 +115,7 @@ groups! {
     /// What is said of states and runs.
     results: Results, of Optimize | Compare | Study | Evaluate;
     /// What all commands take.
-    common: Common, of Optimize | Compare | Study | Look | Evaluate | Verify | Recheck | Export;
+    common: Common, of Optimize | Compare | Study | Look | Evaluate | Verify | Tolerance | Recheck | Export;
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Args)]
@@ -348,6 +353,7 @@ impl Arguments {
         }
         match self.command {
             Command::Export => self.export.check(self.files.out.is_some(), self.shape.controls.is_some()),
+            Command::Tolerance => self.tolerance.check(self.files.out.is_some(), self.shape.controls.is_some()),
             Command::Study => self.check_study(),
             _ => Ok(()),
         }

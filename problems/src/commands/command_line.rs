@@ -8,7 +8,9 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::output::{finish, left, notice};
 use crate::commands::scene_options::help_with_defaults;
-use crate::commands::{compare, evaluate, export, field_list, look, new_scene, optimize, recheck, study, verify};
+use crate::commands::{
+    compare, evaluate, export, field_list, look, new_scene, optimize, recheck, study, tolerance, verify,
+};
 use clap::{Arg, value_parser};
 use contact::equilibrium::STAGE_TARGET;
 use contact::memory;
@@ -152,6 +154,7 @@ pub fn execute_among(
         Command::Look => look::run(&loaded, &session),
         Command::Evaluate => evaluate::run(&loaded, &session),
         Command::Verify => verify::run(&loaded.case, &session),
+        Command::Tolerance => tolerance::run(&loaded, &session),
         Command::Recheck => recheck::run(&loaded, arguments),
         Command::Export => export::run(&loaded, &session),
     };

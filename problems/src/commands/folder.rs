@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub const SCENE: &str = "scene.toml";
 pub const START: &str = "start.json";
 pub const REPORT: &str = "report.json";
+/// The page to print of an optimization.
+pub const SUMMARY: &str = "summary.html";
 /// Folders of the two runs of a comparison.
 pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
 /// What a study varies; its rows lie beside it.

@@ -1,6 +1,6 @@
 //! The commands of the contact binaries.
 //!
-//! Contract (kept stable): `NAME [optimize|compare|study|look|evaluate|verify|recheck DIR|export]
+//! Contract (kept stable): `NAME [optimize|compare|study|look|evaluate|verify|tolerance|recheck DIR|export]
 //! [options]`, for
 //! `contact3d` with a scene file before the command. Exit status: 0 success; 1 the computation failed, its result could
 //! not be printed or written, or a certificate does not agree; 2 bad input; 130 interrupted, with a report. `--json`
@@ -40,6 +40,7 @@ mod scene_words;
 mod shape_facts;
 mod solved_shape;
 mod study;
+mod tolerance;
 mod vectors;
 mod verify;
 

@@ -240,7 +240,7 @@ fn options_that_do_not_go_together_are_refused() {
     for (options, words) in [
         (&["export"][..], &["export needs --out DIR"][..]),
         (&["evaluate", "--stl"], &["--stl is allowed with export only"]),
-        (&["--run", "x"], &["--run is allowed with export only"]),
+        (&["--run", "x"], &["--run is allowed with tolerance and export only"]),
         (&["evaluate", "--friction-problem"], &["--friction-problem is allowed with export only"]),
         (&["export", "--out", out, "--evaluation", "1"], &["--run"]),
         (&["export", "--out", out, "--resume", "x"], &["--resume is allowed with optimize, compare and study only"]),

@@ -50,6 +50,7 @@ mod stages;
 mod study;
 mod tall_columns;
 mod terminal;
+mod tolerance;
 mod toy2d;
 mod vtk_files;
 mod ways;

@@ -92,7 +92,7 @@ fn options_of_other_commands_are_refused_with_the_commands_that_take_them() {
     for (arguments, words) in [
         (&["evaluate", "--vtk-history"][..], "--vtk-history is allowed with optimize only"),
         (&["verify", "--no-checks"], "--no-checks is allowed with optimize, compare, study and evaluate only"),
-        (&["--controls", "x"], "--controls is allowed with study, look, evaluate, verify and export only"),
+        (&["--controls", "x"], "--controls is allowed with study, look, evaluate, verify, tolerance and export only"),
         (&["--mesh", "4", "evaluate"], "--mesh is allowed after the command: evaluate --mesh"),
         (&["recheck", "x", "--out", "y"], "--out is allowed with"),
         (&["recheck"], "<DIR>"),

@@ -152,7 +152,7 @@ fn what_is_no_certificate_of_the_scene_is_refused() {
     refused(
         &["recheck", run.path(), "--out", run.path()],
         2,
-        "--out is allowed with optimize, compare, study, look, evaluate, verify and export only",
+        "--out is allowed with optimize, compare, study, look, evaluate, verify, tolerance and export only",
     );
     refused(&["recheck", run.path(), "--controls", "c.json"], 2, "--controls is allowed");
     // A surface with other controls is another scene.

@@ -203,18 +203,18 @@ fn conditions(
         Held::Normal(value) => {
             finite(value)?;
             let of = |direction| vec![Condition { axis: 3, direction, value, support: index }];
-            Ok(nodal_normals(mesh, faces).into_iter().map(|(node, normal)| (node, of(normal))).collect())
+            Ok(nodal_normals(mesh, mesh.nodes(), faces).into_iter().map(|(node, normal)| (node, of(normal))).collect())
         }
     }
 }
 
-/// Unit normals at the nodes of some faces at the reference shape: ∫ψ (a × b) of their corners, at length one; at the
-/// middle of an edge, the mean of its ends.
-pub(crate) fn nodal_normals(mesh: &Mesh, faces: &[CellFace]) -> HashMap<u32, [f64; 3]> {
+/// Unit normals at the nodes of some faces, for nodes at these places: ∫ψ (a × b) of their corners, at length one; at
+/// the middle of an edge, the mean of its ends.
+pub(crate) fn nodal_normals(mesh: &Mesh, places: &[[f64; 3]], faces: &[CellFace]) -> HashMap<u32, [f64; 3]> {
     let mut sums: HashMap<u32, [f64; 3]> = HashMap::new();
     for &face in faces {
         let (nodes, corners) = mesh.face_with_corners(face);
-        let positions: Vec<[f64; 3]> = nodes.iter().map(|&node| mesh.nodes()[node as usize]).collect();
+        let positions: Vec<[f64; 3]> = nodes.iter().map(|&node| places[node as usize]).collect();
         let mut own = vec![[0.0; 3]; corners];
         integrate(&positions, |point| {
             for (sum, value) in own.iter_mut().zip(point.corner_values) {

@@ -3,6 +3,7 @@
 use crate::cost::Quantity;
 use crate::equilibrium::ContactProblem;
 use crate::error::SceneError;
+use crate::shape::Positions;
 use nonsmooth::Vector;
 
 /// kg per mm³ of a density in kg/m³.
@@ -30,7 +31,7 @@ impl ShapeFunction {
         Ok(match quantity {
             Quantity::Volume => Some(uniform(1.0)),
             Quantity::RelativeVolume => {
-                let start = uniform(1.0).value(problem, &problem.scene.start());
+                let start = uniform(1.0).value_at(problem, &problem.start_positions());
                 Some(uniform(1.0 / start))
             }
             Quantity::Mass => Some(Self { bodies: densities(place, problem)? }),
@@ -40,7 +41,10 @@ impl ShapeFunction {
 
     /// The value at some controls.
     pub(crate) fn value(&self, problem: &ContactProblem, controls: &[f64]) -> f64 {
-        let positions = problem.map.positions(controls);
+        self.value_at(problem, &problem.map.positions(controls))
+    }
+
+    fn value_at(&self, problem: &ContactProblem, positions: &Positions) -> f64 {
         let of_body = |(body, factors): &(usize, Vec<f64>)| {
             let mesh = &problem.bodies[*body].mesh;
             let of_cell =

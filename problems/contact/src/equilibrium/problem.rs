@@ -10,7 +10,7 @@ use crate::equilibrium::contact_part::ContactPart;
 use crate::equilibrium::curved_faces::curved_faces;
 use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::equilibrium::{
-    ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, NodeRows, RowSensitivities,
+    ContactBoundary, ContactFacets, ContactGeometry, ContactPoint, ContactRows, FormErrors, NodeRows, RowSensitivities,
 };
 use crate::error::{ContactError, SceneError};
 use crate::names::find_face;
@@ -42,7 +42,7 @@ pub struct ContactProblem {
     pub geometry: ContactGeometry,
     /// From controls to positions of the nodes of all bodies.
     pub map: Arc<ShapeMap>,
-    /// The set of controls that the scene admits.
+    /// The set of controls that the scene admits; of its own controls, where form errors take their place.
     pub admissible: AdmissibleSet,
     /// E* per contact node, MPa.
     pub(super) contact_moduli: Vec<f64>,
@@ -51,6 +51,8 @@ pub struct ContactProblem {
     pub(super) curved_faces: Vec<Option<[CurvedFace; 2]>>,
     /// By body, the points that follow its nodes: middles of edges of curved faces.
     pub(crate) middle_points: Vec<Vec<MiddlePoint>>,
+    /// Positions of all points at the start of the scene.
+    start: Positions,
     /// The contact rows at the start.
     start_rows: ContactRows,
 }
@@ -61,14 +63,25 @@ impl ContactProblem {
     /// # Errors
     /// [`SceneError`] naming the field.
     pub fn new(scene: Scene) -> Result<Self, SceneError> {
+        Self::around(scene, None)
+    }
+
+    /// As [`new`](Self::new); with form errors around a shape, their waves take the place of the controls.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and as [`FormErrors`] says.
+    pub fn around(scene: Scene, errors: Option<&FormErrors>) -> Result<Self, SceneError> {
         scene.validate()?;
         let bodies = bodies(&scene)?;
         let curved = curved_faces(&scene, &bodies)?;
         let maps = maps(&scene, &bodies, &curved.points)?;
         let meshes: Vec<&Mesh> = bodies.iter().map(|body| &*body.mesh).collect();
         let admissible = AdmissibleSet::new(&scene, &meshes, &maps)?;
-        let map = ShapeMap::new(maps);
-        let start = map.points(&scene.start());
+        let lattice = ShapeMap::new(maps);
+        let start = lattice.points(&scene.start());
+        let flat: Vec<bool> = scene.bodies.iter().map(|body| body.heights().is_some()).collect();
+        let map = errors.map(|errors| errors.map(&lattice, &bodies, (&curved.points, &flat))).transpose()?;
+        let map = map.unwrap_or(lattice);
         check_start(&scene, &bodies, &start)?;
         let part =
             |index: usize| ContactPart::new((&scene, index), &bodies, (&map, curved.contacts[index].as_ref()), &start);
@@ -96,6 +109,7 @@ impl ContactProblem {
             shapes,
             curved_faces,
             middle_points,
+            start,
             start_rows,
         };
         problem.leave_out_held_nodes()?;
@@ -222,7 +236,7 @@ impl ContactProblem {
 
     /// Positions of all points at the start of the scene.
     pub fn start_positions(&self) -> Positions {
-        self.map.points(&self.scene.start())
+        self.start.clone()
     }
 
     /// The contact rows of a shape.

@@ -124,12 +124,8 @@ impl Bound {
     /// The constraint with its gradient where the shape alone decides it; `problem`: that of its case.
     pub fn of_shape(&self, problem: &ContactProblem, control: &Vector) -> Option<(f64, Vector)> {
         let Rated::Shape(shape) = &self.rated else { return None };
-        Some(self.linear(shape, problem, control))
-    }
-
-    fn linear(&self, shape: &ShapeFunction, problem: &ContactProblem, control: &Vector) -> (f64, Vector) {
         let value = self.limit.constraint(shape.value(problem, control.as_slice()));
-        (value, shape.gradient(problem, control.as_slice()) * self.limit.sign())
+        Some((value, shape.gradient(problem, control.as_slice()) * self.limit.sign()))
     }
 
     /// Whether it depends on the displacements, and whether it has further linearizations then.
@@ -159,33 +155,50 @@ impl Bound {
         control: &Vector,
         states: &CaseStates,
     ) -> Result<Linearized, OracleError> {
-        let (problem, state) = (cases.case(self.case).problem(), &states[self.case]);
+        let of_quantity = self.quantity_pieces(cases, control, states)?.into_iter();
+        let mut linear = of_quantity.map(|(value, slope)| (self.limit.constraint(value), slope * self.limit.sign()));
+        let Some((value, gradient)) = linear.next() else {
+            let reason = format!("no value of {}", self.limit.quantity.name());
+            return Err(OracleError::OutsideDomain { reason });
+        };
+        Ok(Linearized { value, gradient, pieces: linear.collect() })
+    }
+
+    /// Values and gradients of the limited quantity at the states of a shape: one where it is smooth or where forward
+    /// derivatives are not known, else those of all points near the extreme one, which comes first.
+    ///
+    /// # Errors
+    /// [`OracleError`] of the adjoint.
+    pub(crate) fn quantity_pieces(
+        &self,
+        cases: &LoadCases,
+        control: &Vector,
+        states: &CaseStates,
+    ) -> Result<Vec<(f64, Vector)>, OracleError> {
+        let problem = cases.case(self.case).problem();
         let own = match &self.rated {
             Rated::State(own) => own,
             Rated::Shape(shape) => {
-                let (value, gradient) = self.linear(shape, problem, control);
-                return Ok(Linearized { value, gradient, pieces: Vec::new() });
+                let value = shape.value(problem, control.as_slice());
+                return Ok(vec![(value, shape.gradient(problem, control.as_slice()))]);
             }
         };
         if let Some(found) = self.by_tangents(cases, states) {
             return Ok(found);
         }
-        let at = StateView::of(state);
-        let value = self.limit.constraint(own.value(problem, at));
+        let at = StateView::of(&states[self.case]);
         let gradient = cases.gradient(self.case, states, &own.gradient(problem, at).pulled(problem))?;
-        Ok(Linearized { value, gradient: gradient * self.limit.sign(), pieces: Vec::new() })
+        Ok(vec![(own.value(problem, at), gradient)])
     }
 
     /// By forward derivatives of the displacements: all points near the extreme one. None where these are not known.
-    fn by_tangents(&self, cases: &LoadCases, states: &CaseStates) -> Option<Linearized> {
+    fn by_tangents(&self, cases: &LoadCases, states: &CaseStates) -> Option<Vec<(f64, Vector)>> {
         let (own, tangents) = (self.pieces_of()?, states.tangents(self.case)?);
         let problem = cases.case(self.case).problem();
         let changes = unit_changes(states.control.len());
         let velocities = problem.map.velocities(&changes);
         let pieces = own.pieces(problem, StateView::of(&states[self.case]));
-        let row = |piece: &StatePiece| Vector::from_vec(piece.row(tangents, &velocities)) * self.limit.sign();
-        let mut linear = pieces.iter().map(|piece| (self.limit.constraint(piece.value), row(piece)));
-        let (value, gradient) = linear.next()?;
-        Some(Linearized { value, gradient, pieces: linear.collect() })
+        let row = |piece: &StatePiece| (piece.value, Vector::from_vec(piece.row(tangents, &velocities)));
+        Some(pieces.iter().map(row).collect()).filter(|rows: &Vec<_>| !rows.is_empty())
     }
 }

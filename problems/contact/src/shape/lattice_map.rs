@@ -34,7 +34,7 @@ impl LatticeShape {
             Directions::Axes(_) => None,
             Directions::Normal(face) => {
                 let faces = find_face("lattice.normal", face, mesh)?;
-                Some(crate::body::nodal_normals(mesh, faces))
+                Some(crate::body::nodal_normals(mesh, mesh.nodes(), faces))
             }
         };
         let (mut rows, mut moved) = (Vec::with_capacity(3 * mesh.node_count()), 0);
@@ -165,7 +165,7 @@ impl LatticeShape {
 }
 
 /// The rows of N of the middle between two nodes.
-fn mean_rows(rows: &[Vec<(usize, f64)>], ends: [u32; 2]) -> [Vec<(usize, f64)>; 3] {
+pub(crate) fn mean_rows(rows: &[Vec<(usize, f64)>], ends: [u32; 2]) -> [Vec<(usize, f64)>; 3] {
     std::array::from_fn(|axis| {
         let mut sums = BTreeMap::new();
         let ends = ends.iter().flat_map(|&end| &rows[3 * end as usize + axis]);

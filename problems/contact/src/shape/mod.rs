@@ -17,6 +17,7 @@ pub(crate) use bending::{bending_line, lattice_bending_rows};
 pub(crate) use bspline::Basis;
 pub use coordinates::Coordinates;
 pub use lattice::{Directions, LatticeShape, NodeBound, ShapedFace};
+pub(crate) use lattice_map::mean_rows;
 pub(crate) use map::{BodyMap, first_of};
 pub use map::{Positions, ShapeMap, Velocities};
 pub use refinement::{CoarseNet, coarse_net};

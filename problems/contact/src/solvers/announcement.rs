@@ -85,7 +85,7 @@ impl Announcement {
 mod tests {
     use super::*;
     use crate::communication::Parcel;
-    use crate::equilibrium::TangentsOf;
+    use crate::equilibrium::{FormErrors, TangentsOf};
     use crate::scene::{Scene, hertz, signorini};
     use crate::solvers::{SolverKind, Wanted};
     use crate::tfeti::PreconditionerKind;
@@ -127,6 +127,7 @@ mod tests {
             Box::new(SolverPlan {
                 preconditioner,
                 clusters: Some(8),
+                form_errors: Some(FormErrors { controls: vec![-0.0, 1.5], wavelength: 7.0 }),
                 wanted,
                 ..SolverPlan::new(scene, SolverKind::Newton)
             })

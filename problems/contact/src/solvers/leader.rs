@@ -162,7 +162,7 @@ pub fn prepared(
 ) -> Result<OwnSolver, SceneError> {
     plan.scene.validate()?;
     memory::check(&plan, &*communication)?;
-    let problem = Arc::new(ContactProblem::new(plan.scene.clone())?);
+    let problem = Arc::new(ContactProblem::around(plan.scene.clone(), plan.form_errors.as_ref())?);
     plan.check(&problem, communication.size())?;
     let SolverPlan { kind, preconditioner, wanted, clusters, .. } = plan;
     let options = TornOptions { preconditioner, clusters, communication, shelf: Arc::clone(&factors.torn) };

@@ -64,7 +64,7 @@ impl Order {
         }
         let estimate = WorkEstimate::of(scene);
         let max_products = estimate.most_products().max(MIN_PRODUCTS);
-        let columns = if wanted == Wanted::Jacobians { scene.control_count() } else { 0 };
+        let columns = if wanted == Wanted::Jacobians { problem.map.control_count() } else { 0 };
         let [direct, torn] = estimate.seconds(problem, columns);
         // Clusters are asked for by those who want total FETI. Processes have no part in the choice: it is that of one.
         let is_slower = options.clusters.is_none() && torn > CLEARLY_SLOWER * direct;

@@ -1,6 +1,6 @@
 //! A scene and how it is to be solved.
 
-use crate::equilibrium::ContactProblem;
+use crate::equilibrium::{ContactProblem, FormErrors};
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::solvers::SolverKind;
@@ -27,6 +27,8 @@ pub struct SolverPlan {
     pub preconditioner: PreconditionerKind,
     /// Number of clusters of subdomains of all bodies (hybrid total FETI); none: every subdomain by itself.
     pub clusters: Option<usize>,
+    /// Form errors in place of the controls of the scene, if they are.
+    pub form_errors: Option<FormErrors>,
     /// What the solver will be asked for: the choice of `auto` depends on it.
     pub wanted: Wanted,
     /// Number of load cases whose states are held at the same time: memory must do for all of them.
@@ -41,6 +43,7 @@ impl SolverPlan {
             kind,
             preconditioner: PreconditionerKind::default(),
             clusters: None,
+            form_errors: None,
             wanted: Wanted::States,
             cases: 1,
         }
@@ -48,7 +51,11 @@ impl SolverPlan {
 
     /// Columns of a Jacobian that is wanted, else 0.
     pub(crate) fn columns(&self) -> usize {
-        if self.wanted == Wanted::Jacobians { self.scene.control_count() } else { 0 }
+        let controls = match self.form_errors {
+            Some(_) => FormErrors::WAVES * self.scene.shapes().count(),
+            None => self.scene.control_count(),
+        };
+        if self.wanted == Wanted::Jacobians { controls } else { 0 }
     }
 
     /// Refuses clusters that the subdomains of a problem cannot make, processes that would own none, and glued faces

@@ -69,13 +69,28 @@ impl Sheet {
     }
 }
 
+/// A face that may touch, or that has moved.
+pub struct ChangedFace {
+    pub body: usize,
+    /// Its names; none for the rest of the skin.
+    pub names: Vec<String>,
+    pub nodes: Vec<ChangedNode>,
+}
+
+/// A node of a changed face.
+pub struct ChangedNode {
+    pub node: u32,
+    from: [f64; 3],
+    normal: [f64; 3],
+    /// What is to be removed there; negative: to be added, mm.
+    pub amount: f64,
+    to: [f64; 3],
+}
+
 /// The change of all optimized bodies from the start: of the faces that may touch, and of all others that move.
-pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
+pub fn changed_faces(problem: &ContactProblem, controls: &[f64]) -> Vec<ChangedFace> {
     let (start, end) = (problem.start_positions(), problem.map.positions(controls));
-    let several = problem.bodies.len() > 1;
-    let head = "face,node,start_x1_mm,start_x2_mm,start_x3_mm,normal_1,normal_2,normal_3,remove_mm,x1_mm,x2_mm,x3_mm";
-    let mut table = if several { format!("body,{head}\n") } else { format!("{head}\n") };
-    let (mut count, mut removed, mut added) = (0, 0.0_f64, 0.0_f64);
+    let mut changed = Vec::new();
     let shaped = problem.scene.bodies.iter().enumerate().filter(|(_, body)| body.shape.is_some());
     for (body, _) in shaped {
         let (mesh, start, end) = (&problem.bodies[body].mesh, &start[body], &end[body]);
@@ -86,18 +101,43 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
             if !touches && sheet.of_node.keys().all(|&node| start[node as usize] == end[node as usize]) {
                 continue;
             }
-            for &node in sheet.of_node.keys() {
+            let of_node = |&node: &u32| {
                 let (from, to) = (start[node as usize], end[node as usize]);
                 let normal = sheet.normal(node, start);
                 let amount = dot(normal, minus(from, sheet.nearest(node, from, end)));
-                (count, removed, added) = (count + 1, removed.max(amount), added.max(-amount));
-                let numbers: Vec<String> =
-                    from.into_iter().chain(normal).chain([amount]).chain(to).map(exact).collect();
-                let lead = if several { format!("{},", stem(&problem.scene, body)) } else { String::new() };
-                table += &format!("{lead}{},{node},{}\n", quoted(&names.join("; ")), numbers.join(","));
-            }
+                ChangedNode { node, from, normal, amount, to }
+            };
+            changed.push(ChangedFace { body, nodes: sheet.of_node.keys().map(of_node).collect(), names });
         }
     }
+    changed
+}
+
+/// The largest amounts to remove and to add, mm, with the names of their faces.
+pub fn largest(changed: &[ChangedFace]) -> [(f64, &[String]); 2] {
+    let amounts = || changed.iter().flat_map(|face| face.nodes.iter().map(|node| (node.amount, face.names.as_slice())));
+    [1.0, -1.0].map(|sign| {
+        let own = amounts().map(|(amount, names)| (sign * amount, names));
+        own.fold((0.0, &[][..]), |most, next| if next.0 > most.0 { next } else { most })
+    })
+}
+
+/// The changed faces as a table.
+pub fn table(problem: &ContactProblem, controls: &[f64]) -> OutputFile {
+    let changed = changed_faces(problem, controls);
+    let several = problem.bodies.len() > 1;
+    let head = "face,node,start_x1_mm,start_x2_mm,start_x3_mm,normal_1,normal_2,normal_3,remove_mm,x1_mm,x2_mm,x3_mm";
+    let mut table = if several { format!("body,{head}\n") } else { format!("{head}\n") };
+    for ChangedFace { body, names, nodes } in &changed {
+        for ChangedNode { node, from, normal, amount, to } in nodes {
+            let numbers = from.iter().chain(normal).chain([amount]).chain(to).copied().map(exact);
+            let numbers: Vec<String> = numbers.collect();
+            let lead = if several { format!("{},", stem(&problem.scene, *body)) } else { String::new() };
+            table += &format!("{lead}{},{node},{}\n", quoted(&names.join("; ")), numbers.join(","));
+        }
+    }
+    let count: usize = changed.iter().map(|face| face.nodes.len()).sum();
+    let [removed, added] = largest(&changed).map(|(amount, _)| amount);
     let what = format!(
         "the change from the start at {count} points: at most {} mm to remove, {} mm to add",
         number(removed),

@@ -1,12 +1,12 @@
 //! `export`: a shape as files for other programs. Nothing is solved for it.
 
-mod change;
+pub mod change;
 mod deck;
 mod files;
 mod friction;
 mod mesh;
 pub mod options;
-mod run;
+pub mod run;
 mod shape;
 mod surfaces;
 

@@ -63,6 +63,37 @@ pub fn face_facts(cases: &[LookedCase<'_>]) -> Result<Vec<Fact>, Failure> {
     Ok(facts)
 }
 
+/// Bodies with their materials, faces with their loads, contacts, faces that are held: a row each.
+pub fn acting(cases: &[LookedCase<'_>]) -> Vec<Vec<String>> {
+    let first = &cases[0];
+    let scene = &first.problem.scene;
+    let materials = |(index, body): (usize, &BodyScene)| {
+        let words = by_case(cases, |case| of_volumes(&case.problem.scene.bodies[index]));
+        vec![scene_words::body(&body.name), words.join("; ")]
+    };
+    let mut rows: Vec<Vec<String>> = scene.bodies.iter().enumerate().map(materials).collect();
+    let (mut loads, mut supports) = (Vec::new(), Vec::new());
+    for (index, body) in first.problem.bodies.iter().enumerate() {
+        let of_body = if scene.bodies.len() > 1 { format!(" of {}", body.name) } else { String::new() };
+        for (face, own) in body.mesh.faces() {
+            let area: f64 = own.iter().map(|face| body.mesh.face_area(*face, &first.positions[index])).sum();
+            let found = [load_words, held_words].map(|words: Words| {
+                by_case(cases, |case| words(&case.problem.scene.bodies[index], face, area)).join("; ")
+            });
+            for (words, rows) in found.into_iter().zip([&mut loads, &mut supports]) {
+                rows.extend((!words.is_empty()).then(|| vec![format!("{face}{of_body}"), words]));
+            }
+        }
+    }
+    let contacts = (0..scene.contacts.len()).map(|index| vec!["contact".to_owned(), contact_words(scene, index)]);
+    rows.extend(loads.into_iter().chain(contacts));
+    rows.extend(supports);
+    rows
+}
+
+/// What is said of a face of a body, with its area.
+type Words = fn(&BodyScene, &str, f64) -> Vec<String>;
+
 /// Elastic constants and body forces in words.
 fn of_volumes(body: &BodyScene) -> Vec<String> {
     let words = |place: &str, material: &Material| {
@@ -79,11 +110,21 @@ fn of_volumes(body: &BodyScene) -> Vec<String> {
 
 /// What acts on a face in words.
 fn roles(scene: &Scene, body: usize, face: &str, area: f64) -> Vec<String> {
-    let contacts = contacts_of(scene, body, face).map(|(index, contact)| match contact.is_tied() {
-        true => format!("contact: {}", scene_words::sides(scene, index)),
-        false => format!("contact: {}, friction {}", scene_words::sides(scene, index), exact(contact.friction)),
-    });
-    let held = held_on(&scene.bodies[body], face).map(|held| format!("held: {held}"));
-    let loads = loads_on(&scene.bodies[body], face).map(|load| format!("load {}", scene_words::load(load, || area)));
-    contacts.chain(held).chain(loads).collect()
+    let contacts = contacts_of(scene, body, face).map(|(index, _)| format!("contact: {}", contact_words(scene, index)));
+    let own = &scene.bodies[body];
+    contacts.chain(held_words(own, face, area)).chain(load_words(own, face, area)).collect()
+}
+
+/// The sides of a contact, and its friction.
+fn contact_words(scene: &Scene, index: usize) -> String {
+    let (contact, sides) = (&scene.contacts[index], scene_words::sides(scene, index));
+    if contact.is_tied() { sides } else { format!("{sides}, friction {}", exact(contact.friction)) }
+}
+
+fn held_words(body: &BodyScene, face: &str, _area: f64) -> Vec<String> {
+    held_on(body, face).map(|held| format!("held: {held}")).collect()
+}
+
+fn load_words(body: &BodyScene, face: &str, area: f64) -> Vec<String> {
+    loads_on(body, face).map(|load| format!("load {}", scene_words::load(load, || area))).collect()
 }

@@ -52,6 +52,15 @@ pub fn setup(cases: &[(&str, &ContactProblem)], controls: &[f64]) -> Result<Vec<
     Ok(std::iter::once(view).chain(Group::new("", face_facts(&cases)?).section().blocks).collect())
 }
 
+/// Bodies with their materials, loads, contacts and supports, a row each.
+///
+/// # Errors
+/// [`Failure`] for controls without a shape.
+pub fn acting(cases: &[(&str, &ContactProblem)], controls: &[f64]) -> Result<Vec<Vec<String>>, Failure> {
+    let cases = cases.iter().map(|(name, problem)| LookedCase::new(name, problem, controls));
+    Ok(faces::acting(&cases.collect::<Result<Vec<_>, _>>()?))
+}
+
 impl<'a> Look<'a> {
     /// The scene of a case at the shape of some controls.
     fn new(

@@ -4,12 +4,12 @@ use crate::commands::compare::comparison::Comparison;
 use crate::commands::controls::{self, Layout};
 use crate::commands::facts::Facts;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, Folder, json};
+use crate::commands::folder::{COMPARED, Folder, SUMMARY, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::summary::{Ended, all_warnings};
 use crate::commands::report::folder::ReportFolder;
 use crate::commands::report::sections::found_label;
-use crate::commands::report::{captions, gallery, pages, tables};
+use crate::commands::report::{captions, gallery, pages, summary, tables};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
 use scene_file::optimization::{ContactRun, ContactStage};
@@ -35,6 +35,10 @@ pub fn write_optimization(
     if out.wanted().pictures {
         let figure = gallery::convergence(objective, report, &shapes[1]).map_err(Failure::computation)?;
         out.draw(figure, "objective of every evaluation, kinds and origins of steps", captions::COURSE)?;
+    }
+    if out.wanted().report {
+        let paper = summary::page(loaded, ended, facts, folder.path())?;
+        out.write(SUMMARY, &paper, "one page to print, for the one who decides")?;
     }
     out.finish(|parts| pages::optimization(parts, ended, facts, folder.path()), &all_warnings(report, ended.checks))
 }

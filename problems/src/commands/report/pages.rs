@@ -2,6 +2,7 @@
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::{Facts, Group};
+use crate::commands::folder::SUMMARY;
 use crate::commands::numbers::{number, rounded};
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
@@ -9,31 +10,41 @@ use crate::commands::report::sections::{export_command, limits, pictures};
 use crate::commands::scene_words::{friction, mesh};
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
+use crate::commands::tolerance::form_error;
 use contact::equilibrium::StageSeconds;
 use contact::scene::{self, BodyScene};
 use contact::shape::LatticeShape;
-use figures::page::{Block, Page, Section};
+use figures::page::{Block, File, Page, Section};
 use std::path::Path;
 
 /// The report of an optimization.
 pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Path) -> Page {
     let (objective, shapes) = (&ended.last.stage.objective, ended.shapes);
-    let proved = if ended.last.report.is_proved() { "proved" } else { "unproved" };
-    let what = match (shapes[1].keeps_limits(), is_better(shapes[0].value, shapes[1].value)) {
-        (false, _) => "a shape outside the limits".to_owned(),
-        (true, true) => format!("optimized shape, {proved}"),
-        // A start outside the limits may be better, but does not count.
-        (true, false) if !shapes[0].keeps_limits() => format!("a shape within the limits, {proved}"),
-        (true, false) => format!("no better shape was found, {proved}"),
-    };
+    let what = what(ended);
     let limits = limits(&shapes.each_ref(), Some(&ended.last.report));
-    let mut sections = vec![limits, parts.numbers, parts.space, parts.setup, pictures(parts.pictures)];
+    let paper = File { path: SUMMARY.into(), what: "one page to print, for the one who decides".into() };
+    let summary = Section::new("Summary", vec![Block::Files(vec![paper])]);
+    let mut sections = vec![summary, limits, parts.numbers, parts.space, parts.setup, pictures(parts.pictures)];
     sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     let command =
         Block::Listing { title: "The command that writes STL, STEP and CSV".into(), text: export_command(folder) };
     sections.extend(controls(objective, shapes[1].controls.as_slice()));
     sections.extend([Section::new("Export", vec![command]), seconds(&shapes[1])]);
+    sections.push(form_error::section(folder, shapes[1].controls.as_slice()));
     page(objective, &what, facts.lead.join(". ") + ".", sections)
+}
+
+/// What an optimization has found, in words.
+pub fn what(ended: &Ended<'_>) -> String {
+    let shapes = ended.shapes;
+    let proved = if ended.last.report.is_proved() { "proved" } else { "unproved" };
+    match (shapes[1].keeps_limits(), is_better(shapes[0].value, shapes[1].value)) {
+        (false, _) => "a shape outside the limits".to_owned(),
+        (true, true) => format!("optimized shape, {proved}"),
+        // A start outside the limits may be better, but does not count.
+        (true, false) if !shapes[0].keeps_limits() => format!("a shape within the limits, {proved}"),
+        (true, false) => format!("no better shape was found, {proved}"),
+    }
 }
 
 /// The report of an evaluation.
