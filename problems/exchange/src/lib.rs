@@ -1,5 +1,6 @@
-//! Triangles as STL files, which are read too; surfaces over a rectangle, and bodies below them, as STEP files; matrices as Matrix Market
-//! files; grids with data as VTU files; volume meshes as Gmsh files, which are read too, and as input of CalculiX.
+//! Triangles as STL files, which are read too; B-spline surfaces, and bodies below them, as STEP files; matrices as
+//! Matrix Market files; grids with data as VTU files; volume meshes as Gmsh files, which are read too, and as input of
+//! CalculiX.
 //!
 //! ```text
 //! triangles        ─ stl

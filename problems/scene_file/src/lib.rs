@@ -128,8 +128,8 @@ impl SceneFile {
     ///
     /// # Errors
     /// [`SceneError::File`] for text that is no TOML, [`SceneError::UnknownField`] with the nearest name, and
-    /// [`SceneError::Field`] with the path of the field, its value and what is allowed; [`SceneError::Open`] with one of
-    /// these for a text that leaves something open.
+    /// [`SceneError::Field`] with the path of the field, its value and what is allowed; [`SceneError::Open`] with one
+    /// of these for a text that leaves something open.
     pub fn parse(text: &str, name: &str) -> Result<Self, SceneError> {
         Self::parse_table(text, name).map_err(|source| match open_questions(text) {
             open if open.is_empty() => source,

@@ -120,7 +120,7 @@ pub enum ObstacleSection {
         /// Direction of its axis, of any length.
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
         axis: [f64; 3],
-        /// From the axis to the centre of the circle; negative for a barrel, whose circle has its centre beyond the axis.
+        /// From the axis to the centre of the circle; negative for a barrel, whose circle has it beyond the axis.
         #[schemars(range(min = -1e12, max = 1e12), extend("x-unit" = "mm"))]
         major_radius: f64,
         /// Radius of the circle.
@@ -155,8 +155,8 @@ pub enum ObstacleSection {
         /// The unit of lengths in the file.
         #[serde(default)]
         unit: UnitName,
-        /// Where the body is: outside where the normals of the facets point to it, which are those of the cells or, in a
-        /// file without cells, those that the order of the corners tells.
+        /// Where the body is: outside where the normals of the facets point to it, which are those of the cells or, in
+        /// a file without cells, those that the order of the corners tells.
         #[serde(default)]
         side: Side,
     },

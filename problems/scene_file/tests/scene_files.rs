@@ -4,10 +4,8 @@
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{NodeWeight, PressureMeasure, Quantity};
-use contact::equilibrium::ContactProblem;
 use contact::scene;
 use contact::scene::Held;
-use exchange::gmsh::{self, CellKind, FacetKind, GmshCell, GmshFacet, GmshMesh};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName, SceneFile, field_tables, schema};
 use serde_json::Value;

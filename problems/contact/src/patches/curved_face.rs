@@ -173,12 +173,8 @@ impl CurvedFace {
             quadratic_facets[*facet] = Some(QuadraticFacet { middles, remainder });
         }
         let normals = fits.into_iter().map(|(node, fit)| (node, fit.normal)).collect();
-        let along = |(facet, normal): (&(usize, Facet, Vec<u32>), &[f64; 3])| {
-            primitive.map_or(0.0, |primitive| dot(primitive.parts(x(facet.1.corners()[0])).1, *normal))
-        };
-        let sum: f64 = part.facets.iter().zip(&part.normals).map(along).sum();
         let facets = part.facets.iter().map(|(facet, ..)| *facet).collect();
-        let primitive = primitive.map(|primitive| (primitive, if sum < 0.0 { -1.0 } else { 1.0 }));
+        let primitive = primitive.map(|primitive| (primitive, part.sense(&primitive)));
         self.parts.push(SmoothPart { facets, primitive, normals });
     }
 }
@@ -209,6 +205,15 @@ impl Part<'_> {
 
     fn corners(&self) -> impl Iterator<Item = u32> + '_ {
         self.facets.iter().flat_map(|(_, facet, _)| facet.corners().iter().copied())
+    }
+
+    /// 1 where the outside of the facets is that of a primitive, else −1.
+    fn sense(&self, primitive: &Primitive) -> f64 {
+        let along = |((_, facet, _), normal): (&(usize, Facet, Vec<u32>), &[f64; 3])| {
+            dot(primitive.parts(self.places[facet.corners()[0] as usize]).1, *normal)
+        };
+        let sum: f64 = self.facets.iter().zip(&self.normals).map(along).sum();
+        if sum < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// The middle nodes of the mesh by their edges, where any of them lies off its chord.

@@ -4,6 +4,7 @@ use crate::error::SceneError;
 use crate::scene::HeightGrid;
 use crate::scene::mesh_surface::MeshSurface;
 use crate::scene::revolution::{Meridian, Revolution};
+use crate::scene::side::Side;
 use serde::{Deserialize, Serialize};
 
 /// Analytic surfaces of the paper, a plane, indenters with known solutions, and heights on a grid.
@@ -72,22 +73,16 @@ pub enum CounterSurface {
     Mesh(MeshSurface),
 }
 
-/// On which side of a closed surface the body is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SideName", transform = crate::schema::names_only))]
-pub enum Side {
-    /// Outside: the obstacle is convex.
-    #[default]
-    Outside,
-    /// Inside: the obstacle is a socket or a bore.
-    Inside,
-}
-
 /// R − √(R² − r²) of a sphere at the place r from its lowest point, without the cancellation for large R.
 fn rise(radius: f64, place: [f64; 2]) -> f64 {
     let square = place[0] * place[0] + place[1] * place[1];
     square / (radius + (radius * radius - square).sqrt())
+}
+
+impl From<Revolution> for CounterSurface {
+    fn from(surface: Revolution) -> Self {
+        Self::Revolution(Box::new(surface))
+    }
 }
 
 impl CounterSurface {

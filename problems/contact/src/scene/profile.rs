@@ -8,7 +8,6 @@
 //! The curve runs with the outside on its right.
 
 use crate::error::SceneError;
-use crate::scene::revolution::MeridianDistance;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -29,12 +28,22 @@ pub struct Profile(Arc<Curve>);
 #[derive(Debug, PartialEq)]
 struct Curve {
     points: Vec<[f64; 2]>,
-    pieces: Vec<Piece>,
+    pieces: Vec<Cubic>,
+}
+
+/// Signed distance of a point of the half-plane from a meridian, positive outside.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MeridianDistance {
+    pub value: f64,
+    /// The unit normal m.
+    pub normal: [f64; 2],
+    /// k, 1/mm.
+    pub bending: f64,
 }
 
 /// A cubic between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
+struct Cubic {
     /// The points of its Bézier polygon.
     polygon: [[f64; 2]; 4],
     /// Centre and radius of a circle around it.
@@ -100,7 +109,7 @@ impl Profile {
     pub(super) fn distance(&self, x: [f64; 2]) -> Result<MeridianDistance, &'static str> {
         let to = |point: [f64; 2]| (point[0] - x[0]).hypot(point[1] - x[1]);
         let reach = self.0.points.iter().map(|point| to(*point)).fold(f64::INFINITY, f64::min);
-        let near = |piece: &Piece| to(piece.bound.0) - piece.bound.1 <= reach;
+        let near = |piece: &Cubic| to(piece.bound.0) - piece.bound.1 <= reach;
         let candidates = self.0.pieces.iter().enumerate().filter(|(_, piece)| near(piece));
         let nearest = candidates.map(|(number, piece)| {
             let place = piece.nearest(x);
@@ -129,7 +138,7 @@ impl Profile {
         let point = own.polygon[3 * end];
         let away = [x[0] - point[0], x[1] - point[1]];
         let normal = own.normal(end as f64);
-        let meets = |other: &&Piece| other.is_end[1 - end] && other.polygon[3 * (1 - end)] == point;
+        let meets = |other: &&Cubic| other.is_end[1 - end] && other.polygon[3 * (1 - end)] == point;
         let other = self.0.pieces.iter().find(meets).map(|other| other.normal((1 - end) as f64));
         let mean = other.map_or(normal, |other| {
             let sum = [normal[0] + other[0], normal[1] + other[1]];
@@ -153,7 +162,7 @@ fn area(points: &[[f64; 2]]) -> f64 {
 }
 
 /// The pieces of a curve, branch by branch.
-fn pieces(points: &[[f64; 2]], is_closed: bool) -> Vec<Piece> {
+fn pieces(points: &[[f64; 2]], is_closed: bool) -> Vec<Cubic> {
     let count = points.len() - 1;
     let turns = |before: usize, after: usize| {
         let (a, b) = (chord(points, before), chord(points, after));
@@ -181,7 +190,7 @@ fn chord(points: &[[f64; 2]], k: usize) -> [f64; 2] {
 }
 
 /// The pieces of a closed curve without corners, through each of its points once.
-fn smooth_ring(points: &[[f64; 2]]) -> Vec<Piece> {
+fn smooth_ring(points: &[[f64; 2]]) -> Vec<Cubic> {
     let count = points.len();
     let around: Vec<[f64; 2]> =
         (0..count + 2 * WINDOW).map(|k| points[(k + count * WINDOW - WINDOW) % count]).collect();
@@ -191,7 +200,7 @@ fn smooth_ring(points: &[[f64; 2]]) -> Vec<Piece> {
 }
 
 /// The pieces of a smooth branch between its ends.
-fn branch(points: &[[f64; 2]]) -> Vec<Piece> {
+fn branch(points: &[[f64; 2]]) -> Vec<Cubic> {
     let last = points.len() - 1;
     let lengths: Vec<f64> = (0..last).map(|k| chord(points, k)).map(|[a, b]| a.hypot(b)).collect();
     let mut places = vec![0.0; points.len()];
@@ -214,7 +223,7 @@ fn branch(points: &[[f64; 2]]) -> Vec<Piece> {
         let polygon = [start, from(start, third, slopes[k]), from(end, -third, slopes[k + 1]), end];
         let centre = [0, 1].map(|axis| 0.5 * (start[axis] + end[axis]));
         let radius = polygon.iter().map(|p| (p[0] - centre[0]).hypot(p[1] - centre[1])).fold(0.0, f64::max);
-        Piece { polygon, bound: (centre, radius), is_end: [k == 0, k + 1 == last] }
+        Cubic { polygon, bound: (centre, radius), is_end: [k == 0, k + 1 == last] }
     };
     (0..last).map(piece).collect()
 }
@@ -229,7 +238,7 @@ fn derivative_weight(places: &[f64], k: usize, at: usize) -> f64 {
     factors.product::<f64>() / (places[k] - places[at])
 }
 
-impl Piece {
+impl Cubic {
     fn at(&self, t: f64) -> [f64; 2] {
         let u = 1.0 - t;
         let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];

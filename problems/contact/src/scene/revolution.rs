@@ -7,9 +7,9 @@
 
 use crate::error::SceneError;
 use crate::mortar::vector::{across as perpendicular, dot, length, plus};
-use crate::scene::counter_surface::{CounterSurface, Side};
 use crate::scene::foot::Foot;
-use crate::scene::profile::Profile;
+use crate::scene::profile::{MeridianDistance, Profile};
+use crate::scene::side::Side;
 use serde::{Deserialize, Serialize};
 
 /// Radial part of a unit normal on the axis that is rounding.
@@ -47,22 +47,6 @@ pub enum Meridian {
     },
     /// A curve through points.
     Profile(Profile),
-}
-
-/// Signed distance of a point of the half-plane from a meridian, positive outside.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct MeridianDistance {
-    pub value: f64,
-    /// The unit normal m.
-    pub normal: [f64; 2],
-    /// k, 1/mm.
-    pub bending: f64,
-}
-
-impl From<Revolution> for CounterSurface {
-    fn from(surface: Revolution) -> Self {
-        Self::Revolution(Box::new(surface))
-    }
 }
 
 impl Revolution {

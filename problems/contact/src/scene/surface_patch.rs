@@ -2,8 +2,8 @@
 
 use crate::mortar::vector::{cross, dot, length, plus};
 use crate::mortar::{NODES, Quadratic};
-use crate::scene::counter_surface::Side;
 use crate::scene::foot::Foot;
+use crate::scene::side::Side;
 use rstar::AABB;
 
 /// Steps of Newton's method for a projection.
@@ -165,8 +165,8 @@ impl SurfacePatch {
         })
     }
 
-    /// The foot on an edge; `mean`: the mean normal of the parts that meet there. Beside an open rim there is nothing to
-    /// lie inside of.
+    /// The foot on an edge; `mean`: the mean normal of the parts that meet there. Beside an open rim there is nothing
+    /// to lie inside of.
     fn edge_foot(&self, k: usize, mean: Option<[f64; 3]>, x: [f64; 3], side: Side) -> Foot {
         let edge = Edge(self.edge(k));
         let t = edge.nearest(x);

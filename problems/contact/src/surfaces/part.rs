@@ -32,13 +32,13 @@ pub(super) struct Source<'a> {
 
 /// Some facets with all nodes of the mesh on each, and their normals.
 #[derive(Clone, Default)]
-struct Piece {
+struct FacetGroup {
     facets: Vec<Facet>,
     nodes: Vec<Vec<u32>>,
     normals: Vec<[f64; 3]>,
 }
 
-impl Piece {
+impl FacetGroup {
     fn of(&self, which: impl Iterator<Item = usize>) -> Self {
         let mut own = Self::default();
         for facet in which {
@@ -77,7 +77,7 @@ impl Source<'_> {
     /// The parts of a face.
     pub(super) fn parts(&self, faces: &[CellFace]) -> Vec<Part> {
         let x = |node: u32| self.start[node as usize];
-        let mut whole = Piece::default();
+        let mut whole = FacetGroup::default();
         for face in faces {
             let (nodes, corners) = self.mesh.face_with_corners(*face);
             let Some(facet) = Facet::new(&nodes[..corners]) else { continue };
@@ -85,14 +85,15 @@ impl Source<'_> {
             whole.facets.push(facet);
             whole.nodes.push(nodes);
         }
-        let mut open: Vec<(Piece, usize)> = whole.smooth_parts().into_iter().map(|piece| (piece, DIVISIONS)).collect();
+        let mut open: Vec<(FacetGroup, usize)> =
+            whole.smooth_parts().into_iter().map(|piece| (piece, DIVISIONS)).collect();
         open.reverse();
         let mut parts = Vec::new();
         while let Some((piece, divisions)) = open.pop() {
             let chart = Chart::new(&piece.facets, &piece.normals, &x);
             if chart.is_none() && divisions > 0 {
                 let halves = piece.halves();
-                let smaller: Vec<Piece> = halves.iter().flat_map(Piece::smooth_parts).collect();
+                let smaller: Vec<FacetGroup> = halves.iter().flat_map(FacetGroup::smooth_parts).collect();
                 open.extend(smaller.into_iter().rev().map(|piece| (piece, divisions - 1)));
                 continue;
             }
@@ -101,7 +102,7 @@ impl Source<'_> {
         parts
     }
 
-    fn part(&self, piece: &Piece, chart: Option<Chart>) -> Part {
+    fn part(&self, piece: &FacetGroup, chart: Option<Chart>) -> Part {
         let x = |node: u32| self.start[node as usize];
         let mut nodes: BTreeSet<u32> = piece.facets.iter().flat_map(|facet| facet.corners().iter().copied()).collect();
         let mut edges: BTreeMap<[u32; 2], Option<u32>> = BTreeMap::new();

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 /// A volume mesh with its surface elements and physical groups. Ids of nodes are places in [`GmshMesh::nodes`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GmshMesh {
-    /// Positions of the nodes that volume elements use, or surface elements of a mesh without these, in the order of the
-    /// file.
+    /// Positions of the nodes that volume elements use, or in a mesh without these the surface elements, in the order
+    /// of the file.
     pub nodes: Vec<[f64; 3]>,
     /// Gmsh's tags of these nodes; each is positive and appears once.
     pub node_tags: Vec<u64>,

@@ -67,10 +67,10 @@ impl<'a> Face<'a> {
         match &self.form {
             Form::Plane => "plane".into(),
             Form::Round(Primitive::Cylinder { radius, .. }, convex) => {
-                format!("{} of radius {} mm", inside(convex, "bore", "cylinder"), super::write::plain(*radius))
+                format!("{} of radius {} mm", inside(convex, "bore", "cylinder"), super::text::plain(*radius))
             }
             Form::Round(Primitive::Sphere { radius, .. }, convex) => {
-                format!("{} of radius {} mm", inside(convex, "spherical seat", "sphere"), super::write::plain(*radius))
+                format!("{} of radius {} mm", inside(convex, "spherical seat", "sphere"), super::text::plain(*radius))
             }
             Form::Round(_, convex) => inside(convex, "conical seat", "cone"),
             Form::Free => "curved".into(),

@@ -3,7 +3,7 @@
 use crate::draft::face::{Face, Form, dot, length};
 use crate::draft::obstacle::upwards;
 use crate::draft::roles::Roles;
-use crate::draft::write::{plain, quoted, rounded, unit_vector, vector};
+use crate::draft::text::{plain, quoted, rounded, unit_vector, vector};
 use contact::body::mesh::bounding_box;
 use contact::patches::Primitive;
 

@@ -1,13 +1,14 @@
 //! A first scene for a mesh, from the names and the form of its faces: commented, to be changed.
 //!
-//! Names say which faces touch, which are held, which are loaded. What only the user can know stays open: a comment such
-//! as `# load: …` asks for it, and lines below it propose what fits the part. [`open_questions`] finds them again.
+//! Names say which faces touch, which are held, which are loaded. What only the user can know stays open: a comment
+//! such as `# load: …` asks for it, and lines below it propose what fits the part. [`open_questions`] finds them again.
 
 mod face;
 mod lattice;
 mod obstacle;
 mod open;
 mod roles;
+mod text;
 mod write;
 
 pub use open::open_questions;

@@ -1,7 +1,7 @@
 //! The obstacle that a face touches, by the form of the face.
 
 use crate::draft::face::{Face, Form, dot, length};
-use crate::draft::write::{plain, unit_vector, vector};
+use crate::draft::text::{plain, unit_vector, vector};
 use contact::patches::Primitive;
 
 /// The lines of a section, or what the user must say first.

@@ -105,5 +105,5 @@ fn direction(contacts: &[&Face<'_>], symmetric: &[&Face<'_>]) -> Option<[f64; 3]
         (0..3).for_each(|axis| sum[axis] -= across * normal[axis]);
     }
     let (size, area) = (length(sum), contacts.iter().map(|face| face.area).sum::<f64>());
-    (size > CLEAR * area).then(|| sum.map(|part| super::write::tidy(part / size)))
+    (size > CLEAR * area).then(|| sum.map(|part| super::text::tidy(part / size)))
 }
