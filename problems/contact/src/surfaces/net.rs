@@ -121,7 +121,7 @@ impl SplineNet {
         best
     }
 
-    /// The same surface with further knots along both parameters, ascending.
+    /// This surface with further knots along both parameters, ascending.
     pub(super) fn refined(&self, knots: [&[f64]; 2]) -> Self {
         let [(first, rows), (second, columns)] = [0, 1].map(|axis| insertion(&self.bases[axis], knots[axis]));
         let count = self.bases[1].count();
