@@ -17,7 +17,7 @@ const FINE: f64 = 1e-3;
 const SHARE: f64 = 1e-4;
 /// Nets are refined until the distance is this part of the allowed one, as far as the nodes determine them.
 const GOAL: f64 = 0.01;
-/// Largest angle between the normals of a facet and of the surface at its centre, degrees: more is a wave.
+/// Largest angle between the normals of a facet and of the surface at its centre, degrees. More are waves.
 const ANGLE: f64 = 15.0;
 /// How far a surface reaches beyond its face on every side, as a part of the length of the face along that side.
 const OVERLAP: f64 = 0.05;

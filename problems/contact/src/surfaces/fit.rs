@@ -23,8 +23,8 @@ const ONE_ROW: f64 = 0.05;
 /// Halving intervals along one side alone is enough where it divides the largest residual by this.
 const ENOUGH: f64 = 4.0;
 
-/// The control points that a point sees, as (control point, weight).
-type Weights = Vec<(usize, f64)>;
+/// The control points that act at a point, with their weights.
+type PointWeights = Vec<(usize, f64)>;
 
 /// Points with their parameters.
 pub(super) struct Samples<'a> {
@@ -161,8 +161,8 @@ impl Samples<'_> {
     }
 
     /// A net with what is left at the points.
-    fn measured(&self, net: SplineNet, rows: &[Weights]) -> Fit {
-        let rest = |(row, x): (&Weights, &[f64; 3])| {
+    fn measured(&self, net: SplineNet, rows: &[PointWeights]) -> Fit {
+        let rest = |(row, x): (&PointWeights, &[f64; 3])| {
             row.iter().fold(*x, |rest, (point, weight)| plus(rest, -weight, net.points()[*point]))
         };
         let rests = rows.iter().zip(self.points).map(rest).collect();
@@ -170,7 +170,7 @@ impl Samples<'_> {
     }
 
     /// The factored normal equations of a net, and the weights of its control points at all points.
-    fn factored(&self, net: &SplineNet) -> Result<(NumericFactor, Vec<Weights>), FactorizationError> {
+    fn factored(&self, net: &SplineNet) -> Result<(NumericFactor, Vec<PointWeights>), FactorizationError> {
         let [n1, n2] = net.counts();
         let index = |i: usize, j: usize| if n1 < n2 { (i * n2 + j, j * n1 + i) } else { (i * n2 + j, i * n2 + j) };
         let mut columns = vec![Vec::new(); n1 * n2];
@@ -187,7 +187,7 @@ impl Samples<'_> {
                 values[position] += value;
             }
         };
-        let rows: Vec<Weights> = self.places.iter().map(|place| self.row(net, *place)).collect();
+        let rows: Vec<PointWeights> = self.places.iter().map(|place| self.row(net, *place)).collect();
         let share = 1.0 / rows.len() as f64;
         for row in &rows {
             for &(first, a) in row {
@@ -220,7 +220,7 @@ impl Samples<'_> {
         }
     }
 
-    fn row(&self, net: &SplineNet, place: [f64; 2]) -> Weights {
+    fn row(&self, net: &SplineNet, place: [f64; 2]) -> PointWeights {
         let [first, second] = [0, 1].map(|axis| weights(&net.bases()[axis], place[axis]).collect::<Vec<_>>());
         let count = net.counts()[1];
         let all = first.iter().flat_map(|(i, a)| second.iter().map(move |(j, b)| (i * count + j, a * b)));
