@@ -1,11 +1,19 @@
 //! Parameters of a face: places on a plane, a cylinder or a sphere.
 
+use super::fit::Samples;
+use super::net::SplineNet;
+use crate::linear::FactorizationError;
 use crate::mortar::vector::{across, cross, dot, length, plus};
 use crate::mortar::{Facet, Primitive};
 use crate::patches::fit;
 
 /// Least share of the smallest in the largest scale of area between a face and its parameters.
 const LEAST_SHARE: f64 = 0.2;
+/// Angle of an interval between knots of the base, at most; and their largest number.
+const STEP: f64 = 0.15;
+const MOST: usize = 64;
+/// Points per interval that the surface of the base goes through.
+const SAMPLES: usize = 3;
 /// A chart replaces one before it where its share is larger by more than this.
 const BETTER: f64 = 1e-3;
 
@@ -117,6 +125,39 @@ impl Chart {
         [cosine * u + sine * v, cosine * v - sine * u]
     }
 
+    /// The point of the base with some parameters.
+    fn point(&self, [p, q]: [f64; 2]) -> [f64; 3] {
+        let [cosine, sine] = self.turn;
+        let (u, v) = (self.sign * (cosine * p - sine * q), sine * p + cosine * q);
+        let [a, b, c] = match self.base {
+            Base::Plane => [u, v, 0.0],
+            Base::Cylinder { radius } => [radius * (u / radius).cos(), radius * (u / radius).sin(), v],
+            Base::Sphere { radius } => {
+                let square = (u * u + v * v) / (4.0 * radius * radius);
+                [u / (1.0 + square), v / (1.0 + square), radius * (1.0 - square) / (1.0 + square)]
+            }
+        };
+        let [first, second, third] = self.frame;
+        plus(plus(plus(self.point, a, first), b, second), c, third)
+    }
+
+    /// The base over a rectangle of parameters, given by its least corner and its sides.
+    pub(super) fn surface(&self, corner: [f64; 2], sides: [f64; 2]) -> Result<SplineNet, FactorizationError> {
+        let along = |side: f64, radius: f64| ((side / radius / STEP).ceil() as usize).clamp(1, MOST);
+        let intervals = match self.base {
+            Base::Plane => [1, 1],
+            Base::Cylinder { radius } => [along(sides[0], radius), 1],
+            Base::Sphere { radius } => sides.map(|side| along(side, radius)),
+        };
+        let counts = intervals.map(|count| SAMPLES * (count + 1));
+        let places: Vec<[f64; 2]> = (0..=counts[0])
+            .flat_map(|i| (0..=counts[1]).map(move |j| [i as f64 / counts[0] as f64, j as f64 / counts[1] as f64]))
+            .collect();
+        let point = |place: &[f64; 2]| self.point([0, 1].map(|axis| corner[axis] + sides[axis] * place[axis]));
+        let points: Vec<[f64; 3]> = places.iter().map(point).collect();
+        Samples { places: &places, points: &points, sides, has_waves: &|_| false }.on_net(intervals)
+    }
+
     /// The smallest over the largest scale of area of the corners of all facets, negative where facets lie in opposite
     /// senses; and the sign of most areas.
     fn least_share(&self, facets: &[Facet], x: &dyn Fn(u32) -> [f64; 3]) -> (f64, f64) {
@@ -185,4 +226,27 @@ fn turn(mut places: Vec<[f64; 2]>) -> [f64; 2] {
         }
     }
     best.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_and_points_of_the_base_belong_together() {
+        let frame = [[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]];
+        for base in [Base::Plane, Base::Cylinder { radius: 7.0 }, Base::Sphere { radius: 7.0 }] {
+            let chart = Chart { base, point: [1.0, -2.0, 30.0], frame, turn: [0.8, 0.6], sign: -1.0 };
+            for place in [[0.0, 0.0], [3.0, -2.0], [-5.0, 4.0]] {
+                let found = chart.place(chart.point(place));
+                assert!((0..2).all(|axis| (found[axis] - place[axis]).abs() < 1e-13), "{base:?}: {found:?}");
+            }
+            let net = chart.surface([-5.0, -4.0], [10.0, 8.0]).expect("a surface");
+            let at = |t: f64, axis: usize, side: f64| side * t - [5.0, 4.0][axis];
+            for [s, t] in [[0.0, 0.0], [0.33, 0.71], [1.0, 0.2]] {
+                let (found, exact) = (net.at([s, t]), chart.point([at(s, 0, 10.0), at(t, 1, 8.0)]));
+                assert!(length(plus(found, -1.0, exact)) < 1e-4 * 7.0, "{base:?}: {found:?} {exact:?}");
+            }
+        }
+    }
 }

@@ -140,7 +140,8 @@ pub(super) fn spline_face(
         angles.fold(0.0, f64::max)
     };
     let has_waves = |net: &SplineNet| angle(net) > ANGLE;
-    let fit = Samples { places: &places, points: &points, sides, has_waves: &has_waves }.fit(GOAL * allowed);
+    let samples = Samples { places: &places, points: &points, sides, has_waves: &has_waves };
+    let fit = chart.surface(corner, sides).and_then(|base| samples.fit(base, GOAL * allowed));
     let Fit { net, distances, .. } = fit.map_err(|source| SurfaceError::Equations { face: name.clone(), source })?;
     let distance = distances.into_iter().take(part.nodes).fold(0.0, f64::max);
     if distance > allowed {

@@ -59,10 +59,16 @@ impl Fit {
 }
 
 impl Samples<'_> {
-    /// The surface on the coarsest net of which no point is farther off than `goal`, or the nearest one.
-    pub(super) fn fit(&self, goal: f64) -> Result<Fit, FactorizationError> {
+    /// The surface on a net with so many equal intervals.
+    pub(super) fn on_net(&self, intervals: [usize; 2]) -> Result<SplineNet, FactorizationError> {
         let centre = self.points.iter().fold([0.0; 3], |sum, x| plus(sum, 1.0 / self.points.len() as f64, *x));
-        let mut best = self.improved(SplineNet::at_one_place(centre))?;
+        Ok(self.improved(SplineNet::at_one_place(intervals, centre))?.net)
+    }
+
+    /// The surface on the coarsest net, from that of a first surface on, of which no point is farther off than `goal`,
+    /// or the nearest one.
+    pub(super) fn fit(&self, first: SplineNet, goal: f64) -> Result<Fit, FactorizationError> {
+        let mut best = self.improved(first)?;
         let (mut current, mut reference) = (best.clone(), best.net.clone());
         while best.worst() > goal {
             let Some(finer) = self.finer(&current, &reference, goal)? else { break };

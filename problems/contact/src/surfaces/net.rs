@@ -36,10 +36,12 @@ pub(super) fn ends(basis: &Basis) -> &[f64] {
 }
 
 impl SplineNet {
-    /// A surface without inner knots of which all points lie in one.
-    pub(super) fn at_one_place(place: [f64; 3]) -> Self {
-        let bases = [0, 1].map(|_| Basis::clamped_at(DEGREE, std::iter::empty()));
-        Self { bases, points: vec![place; (DEGREE + 1) * (DEGREE + 1)] }
+    /// A surface with so many equal intervals between knots, of which all points lie in one.
+    pub(super) fn at_one_place(intervals: [usize; 2], place: [f64; 3]) -> Self {
+        let inner = |count: usize| (1..count).map(move |knot| knot as f64 / count as f64);
+        let bases = intervals.map(|count| Basis::clamped_at(DEGREE, inner(count)));
+        let count = bases.iter().map(Basis::count).product();
+        Self { bases, points: vec![place; count] }
     }
 
     /// Control points along both parameters.
@@ -169,7 +171,7 @@ mod tests {
     use super::*;
 
     fn wavy() -> SplineNet {
-        let mut net = SplineNet::at_one_place([0.0; 3]).refined([&[0.3, 0.5], &[0.6]]);
+        let mut net = SplineNet::at_one_place([1; 2], [0.0; 3]).refined([&[0.3, 0.5], &[0.6]]);
         let columns = net.counts()[1];
         net.add(|index| {
             let [i, j] = [index / columns, index % columns].map(|index| index as f64);
