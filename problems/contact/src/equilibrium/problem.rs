@@ -49,8 +49,6 @@ pub struct ContactProblem {
     shapes: Vec<CellShapes>,
     /// Slave and master face by contact, where any of them is curved and gaps are along their normals.
     pub(super) curved_faces: Vec<Option<[CurvedFace; 2]>>,
-    /// By body, the points that follow its nodes: middles of edges of curved faces.
-    pub(crate) middle_points: Vec<Vec<MiddlePoint>>,
     /// Positions of all points at the start of the scene.
     start: Positions,
     /// The contact rows at the start.
@@ -97,7 +95,7 @@ impl ContactProblem {
             bodies.iter().enumerate().any(|(number, body)| map.shapes(number) && !body.trace.is_empty());
         let geometry = ContactGeometry { parts, traces_change };
         let (bodies, map): (Arc<[Body]>, _) = (Arc::from(bodies), Arc::new(map));
-        let (contact_moduli, curved_faces, middle_points) = (Vec::new(), curved.alone, curved.points);
+        let (contact_moduli, curved_faces) = (Vec::new(), curved.alone);
         let mut problem = Self {
             scene,
             bodies,
@@ -108,7 +106,6 @@ impl ContactProblem {
             contact_moduli,
             shapes,
             curved_faces,
-            middle_points,
             start,
             start_rows,
         };

@@ -27,7 +27,7 @@ pub(crate) fn primitive(points: &[[f64; 3]], normals: &[[f64; 3]]) -> Option<Pri
     if fits(&plane) {
         return Some(plane);
     }
-    let axis = least_spread(normals);
+    let axis = least_spread(normals, |_| 1.0);
     let (point, radius) = circle(points, axis, centre)?;
     let cylinder = Primitive::Cylinder { point, axis, radius };
     let cone = Primitive::Cone { point, axis, radius, slope: slope(points, point, axis) };
@@ -43,15 +43,18 @@ pub(crate) fn mean(points: &[[f64; 3]]) -> [f64; 3] {
 
 /// The plane of least squares.
 pub(super) fn plane(points: &[[f64; 3]]) -> Primitive {
-    Primitive::Plane { point: mean(points), normal: least_spread(points) }
+    Primitive::Plane { point: mean(points), normal: least_spread(points, |_| 1.0) }
 }
 
-/// The direction along which some vectors vary least.
-pub(crate) fn least_spread(vectors: &[[f64; 3]]) -> [f64; 3] {
-    let (middle, mut sum) = (mean(vectors), Matrix3::zeros());
-    for vector in vectors {
+/// The direction along which some vectors, with their weights, vary least.
+pub(crate) fn least_spread(vectors: &[[f64; 3]], weight: impl Fn(usize) -> f64) -> [f64; 3] {
+    let total: f64 = (0..vectors.len()).map(&weight).sum();
+    let add = |sum, (index, vector): (usize, &[f64; 3])| plus(sum, weight(index) / total, *vector);
+    let middle = vectors.iter().enumerate().fold([0.0; 3], add);
+    let mut sum = Matrix3::zeros();
+    for (index, vector) in vectors.iter().enumerate() {
         let from = Vector3::from(plus(*vector, -1.0, middle));
-        sum += from * from.transpose();
+        sum += weight(index) * from * from.transpose();
     }
     let eigen = sum.symmetric_eigen();
     let vector = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned();

@@ -4,7 +4,7 @@ use super::fit::Samples;
 use super::net::SplineNet;
 use crate::linear::FactorizationError;
 use crate::mortar::vector::{across, cross, dot, length, plus};
-use crate::mortar::{Facet, Primitive};
+use crate::mortar::{Facet, Primitive, doubled_area};
 use crate::patches::fit;
 
 /// Least share of the smallest in the largest scale of area between a face and its parameters.
@@ -52,7 +52,11 @@ impl Chart {
         nodes.dedup();
         let points: Vec<[f64; 3]> = nodes.iter().map(|&node| x(node)).collect();
         let mut best: Option<(Self, f64)> = None;
-        for chart in Self::candidates(&points, normals).into_iter().flatten() {
+        let area = |facet: usize| {
+            let corners: Vec<[f64; 3]> = facets[facet].corners().iter().map(|&node| x(node)).collect();
+            length(doubled_area(&corners))
+        };
+        for chart in Self::candidates(&points, normals, area).into_iter().flatten() {
             let (share, sign) = chart.least_share(facets, x);
             if share >= LEAST_SHARE && best.is_none_or(|(_, other)| share > other + BETTER) {
                 best = Some((Self { sign, ..chart }, share));
@@ -64,7 +68,7 @@ impl Chart {
         Some(if turned { Self { turn: turn(places), ..chart } } else { chart })
     }
 
-    fn candidates(points: &[[f64; 3]], normals: &[[f64; 3]]) -> [Option<Self>; 3] {
+    fn candidates(points: &[[f64; 3]], normals: &[[f64; 3]], area: impl Fn(usize) -> f64) -> [Option<Self>; 3] {
         let centre = fit::mean(points);
         let primitive = fit::primitive(points, normals);
         let chart = |base, point, frame| Self { base, point, frame, turn: [1.0, 0.0], sign: 1.0 };
@@ -81,7 +85,8 @@ impl Chart {
                 Some((point, axis, radius.abs()))
             }
             _ => {
-                let axis = fit::least_spread(normals);
+                // Small facets at an end may look along the axis.
+                let axis = fit::least_spread(normals, area);
                 fit::circle(points, axis, centre).map(|(point, radius)| (point, axis, radius))
             }
         };

@@ -8,7 +8,6 @@ use crate::equilibrium::ContactProblem;
 use crate::linear::FactorizationError;
 use crate::mortar::doubled_area;
 use crate::mortar::vector::{cross, dot, length};
-use crate::shape::LatticeShape;
 use thiserror::Error;
 
 /// Largest distance of a node from its surface that is always allowed, mm: what machining cannot make.
@@ -92,12 +91,9 @@ pub fn spline_faces(
     faces: &[(String, Vec<CellFace>)],
     controls: &[f64],
 ) -> Vec<Result<SplineFace, SurfaceError>> {
-    let (start, end) = (&problem.start_positions()[body], &problem.map.points(controls)[body]);
+    let (start, end) = (&problem.start_positions()[body], &problem.map.positions(controls)[body]);
     let mesh = &problem.bodies[body].mesh;
-    // Middles between heights lie on flat facets.
-    let is_flat = problem.scene.bodies[body].shape.as_ref().and_then(LatticeShape::face).is_some();
-    let middles = if is_flat { &[][..] } else { &problem.middle_points[body] };
-    let source = Source { mesh, start, middles };
+    let source = Source { mesh, start };
     let [least, most] = bounding_box(&start[..mesh.node_count()]);
     let extent = (0..3).map(|axis| most[axis] - least[axis]).fold(0.0, f64::max);
     let allowed = FINE.max(SHARE * extent);
@@ -143,7 +139,7 @@ pub(super) fn spline_face(
     let samples = Samples { places: &places, points: &points, sides, has_waves: &has_waves };
     let fit = chart.surface(corner, sides).and_then(|base| samples.fit(base, GOAL * allowed));
     let Fit { net, distances, .. } = fit.map_err(|source| SurfaceError::Equations { face: name.clone(), source })?;
-    let distance = distances.into_iter().take(part.nodes).fold(0.0, f64::max);
+    let distance = distances.into_iter().fold(0.0, f64::max);
     if distance > allowed {
         return Err(SurfaceError::Distance { face: name, distance, allowed });
     }
@@ -151,5 +147,5 @@ pub(super) fn spline_face(
     if angle > ANGLE {
         return Err(SurfaceError::Waves { face: name, angle, allowed: ANGLE });
     }
-    Ok(SplineFace { name, net, nodes: part.nodes, distance, allowed, angle })
+    Ok(SplineFace { name, net, nodes: part.points.len(), distance, allowed, angle })
 }

@@ -4,8 +4,9 @@
 //! S(s, t) = Σ P_ij N_i(s) N_j(t),      min Σ_k |S(s_k, t_k) − x_k|²/n + λ h⁴ ∫ |D²(S − S₀)|²/A
 //! ```
 //! x_k: nodes of the face where they have moved to; (s_k, t_k): their places on a plane, a cylinder or a sphere that
-//! goes with the face at the start; h² = A/n; S₀: that plane, cylinder or sphere, then the surface on the finest net that
-//! the nodes determine between them too. Knots are added where nodes are off, up to nets that have waves between nodes.
+//! goes with the face at the start; h² = A/n; S₀: that plane, cylinder or sphere, then the surface on the finest net
+//! that the nodes determine between them too. Knots are added where nodes are off, up to nets that have waves between
+//! nodes.
 
 mod chart;
 mod face;

@@ -3,7 +3,7 @@
 use super::chart::Chart;
 use crate::body::mesh::{CellFace, Mesh};
 use crate::mortar::{Facet, Primitive};
-use crate::patches::{MiddlePoint, fit, is_off, smooth_parts};
+use crate::patches::{fit, is_off, smooth_parts};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How often a part is divided at most.
@@ -12,10 +12,8 @@ const DIVISIONS: usize = 6;
 /// A part of a face.
 #[derive(Debug, Clone)]
 pub(super) struct Part {
-    /// The nodes on the surface, ascending, then the middles of edges that are no nodes.
+    /// The nodes on the surface, ascending.
     pub points: Vec<u32>,
-    /// How many of the points are nodes.
-    pub nodes: usize,
     pub facets: Vec<Facet>,
     /// Its parameters; none where it folds in all charts.
     pub chart: Option<Chart>,
@@ -24,10 +22,8 @@ pub(super) struct Part {
 /// A face with what its parts are made from.
 pub(super) struct Source<'a> {
     pub mesh: &'a Mesh,
-    /// Where the points are at the start: nodes, then middles of edges.
+    /// Where the nodes are at the start.
     pub start: &'a [[f64; 3]],
-    /// The middles of edges that follow the nodes; none where they do not lie on the surface.
-    pub middles: &'a [MiddlePoint],
 }
 
 /// Some facets with all nodes of the mesh on each, and their normals.
@@ -117,11 +113,7 @@ impl Source<'_> {
         if is_curved || matches!(fit::primitive(&corners, &piece.normals), Some(Primitive::Plane { .. })) {
             nodes.extend(edges.values().flatten());
         }
-        let count = self.mesh.node_count() as u32;
-        let is_own = |middle: &MiddlePoint| edges.contains_key(&middle.ends);
-        let points = (count..).zip(self.middles).filter(|(_, middle)| is_own(middle)).map(|(number, _)| number);
-        let own = nodes.len();
-        Part { points: nodes.into_iter().chain(points).collect(), nodes: own, facets: piece.facets.clone(), chart }
+        Part { points: nodes.into_iter().collect(), facets: piece.facets.clone(), chart }
     }
 }
 

@@ -39,7 +39,7 @@ fn bore(angle: f64) -> impl Fn([f64; 3]) -> [f64; 3] {
 }
 
 fn parts(mesh: &Mesh, faces: &[CellFace]) -> Vec<Part> {
-    Source { mesh, start: mesh.nodes(), middles: &[] }.parts(faces)
+    Source { mesh, start: mesh.nodes() }.parts(faces)
 }
 
 /// Where a lattice moves the nodes of a mesh: up to 2.5 mm, along all axes.
@@ -106,7 +106,7 @@ fn surfaces_do_not_depend_on_units() {
     let end = moved(&mesh);
     let one = spline_face("a".into(), part, [mesh.nodes(), &end], 1e-3).expect("a surface");
     let start = scale(mesh.nodes());
-    let source = Source { mesh: &mesh, start: &start, middles: &[] };
+    let source = Source { mesh: &mesh, start: &start };
     let other = spline_face("a".into(), &source.parts(&face)[0], [&start, &scale(&end)], 25.4e-3).expect("a surface");
     assert_eq!(one.net.counts(), other.net.counts());
     for (a, b) in one.net.points().iter().zip(other.net.points()) {
