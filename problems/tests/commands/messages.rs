@@ -73,7 +73,7 @@ fn any_field_can_be_set() {
         ("solver.kind=newtn", &["solver.kind = \"newtn\"", "\"newton\", \"direct\""]),
         ("body[0].block.bricks=[6, 6]", &["body[0].block.bricks", "3 entries, each an integer ≥ 1 and ≤ 400"]),
         ("body[1].loads[7].face=top", &["body[1].loads[7].face", "without gap"]),
-        ("body[1].block.bottom.form=cone", &["body[1].block.bottom.form = cone", "form = \"plane\""]),
+        ("body[1].block.bottom.form=pyramid", &["body[1].block.bottom.form = pyramid", "form = \"plane\""]),
         ("friction.x=1", &["there is no field `friction.x`", "a finite number ≥ 0"]),
         ("friction", &["FIELD=VALUE"]),
         ("body[0].block.subdomains=5", &["--set body[0].block.subdomains[0] = 5", "a divisor of the 12 bricks"]),

@@ -9,8 +9,8 @@ use crate::shape::bending_line;
 use nonsmooth::Matrix;
 use std::sync::Arc;
 
-/// λ, the weight of the bending.
-const BENDING: f64 = 1e-6;
+/// λ, the weights of the bending.
+const BENDINGS: [f64; 7] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// Corrections on one net.
 const CORRECTIONS: usize = 6;
 /// Control points per point up to which the net is refined.
@@ -62,13 +62,13 @@ impl Samples<'_> {
     /// The surface on a net with so many equal intervals.
     pub(super) fn on_net(&self, intervals: [usize; 2]) -> Result<SplineNet, FactorizationError> {
         let centre = self.points.iter().fold([0.0; 3], |sum, x| plus(sum, 1.0 / self.points.len() as f64, *x));
-        Ok(self.improved(SplineNet::at_one_place(intervals, centre))?.net)
+        Ok(self.improved(SplineNet::at_one_place(intervals, centre), 0.0)?.net)
     }
 
     /// The surface on the coarsest net, from that of a first surface on, of which no point is farther off than `goal`,
     /// or the nearest one.
     pub(super) fn fit(&self, first: SplineNet, goal: f64) -> Result<Fit, FactorizationError> {
-        let mut best = self.improved(first)?;
+        let mut best = self.improved(first, goal)?;
         let (mut current, mut reference) = (best.clone(), best.net.clone());
         while best.worst() > goal {
             let Some(finer) = self.finer(&current, &reference, goal)? else { break };
@@ -85,7 +85,7 @@ impl Samples<'_> {
     }
 
     /// The better of two fits with the intervals halved along one parameter in which points are off by more than the
-    /// goal or, where neither is much better, that along both; none where finer nets have waves or too few points.
+    /// goal or, where neither is much better, that along both; none where finer nets have too few points.
     fn finer(&self, fit: &Fit, reference: &SplineNet, goal: f64) -> Result<Option<Fit>, FactorizationError> {
         let middles = [0, 1].map(|axis| self.middles(fit, axis, goal));
         let mut best: Option<Fit> = None;
@@ -106,8 +106,8 @@ impl Samples<'_> {
                 further.sort_unstable_by(f64::total_cmp);
                 further
             });
-            let found = self.improved(reference.refined(further.each_ref().map(Vec::as_slice)))?;
-            if best.as_ref().is_none_or(|best| found.worst() < best.worst()) && !(self.has_waves)(&found.net) {
+            let found = self.improved(reference.refined(further.each_ref().map(Vec::as_slice)), goal)?;
+            if best.as_ref().is_none_or(|best| found.worst() < best.worst()) {
                 best = Some(found);
             }
         }
@@ -136,10 +136,31 @@ impl Samples<'_> {
         rows.iter_mut().zip(is_off).filter_map(middle).collect()
     }
 
-    /// A net with the correction that bends least.
-    fn improved(&self, net: SplineNet) -> Result<Fit, FactorizationError> {
-        let (factor, rows) = self.factored(&net)?;
+    /// A net with corrections that bend little, then more, until no point is farther off than `goal`, or as long as no
+    /// waves come between the points: a net that cannot reach the points would pay for small gains there with waves where
+    /// there are none.
+    fn improved(&self, net: SplineNet, goal: f64) -> Result<Fit, FactorizationError> {
+        let rows: Vec<PointWeights> = self.places.iter().map(|place| self.row(&net, *place)).collect();
         let mut best = self.measured(net, &rows);
+        for bending in BENDINGS {
+            if best.residual() <= goal {
+                break;
+            }
+            let found = self.corrected(&best, bending, &rows)?;
+            if (self.has_waves)(&found.net) {
+                break;
+            }
+            best = found;
+        }
+        let points = self.points.iter().zip(self.places);
+        best.distances = points.map(|(x, place)| best.net.distance(*x, *place)).collect();
+        Ok(best)
+    }
+
+    /// A fit with corrections as long as each halves what is left.
+    fn corrected(&self, fit: &Fit, bending: f64, rows: &[PointWeights]) -> Result<Fit, FactorizationError> {
+        let factor = self.factored(&fit.net, bending, rows)?;
+        let mut best = fit.clone();
         for _ in 0..CORRECTIONS {
             let change = [0, 1, 2].map(|axis| {
                 let mut right = vec![0.0; best.net.points().len()];
@@ -151,7 +172,7 @@ impl Samples<'_> {
             });
             let mut net = best.net.clone();
             net.add(|point| [0, 1, 2].map(|axis| change[axis][point]));
-            let found = self.measured(net, &rows);
+            let found = self.measured(net, rows);
             let (before, after) = (best.residual(), found.residual());
             if after.is_nan() || after >= before {
                 break;
@@ -161,8 +182,6 @@ impl Samples<'_> {
                 break;
             }
         }
-        let points = self.points.iter().zip(self.places);
-        best.distances = points.map(|(x, place)| best.net.distance(*x, *place)).collect();
         Ok(best)
     }
 
@@ -175,8 +194,13 @@ impl Samples<'_> {
         Fit { net, rests, distances: Vec::new() }
     }
 
-    /// The factored normal equations of a net, and the weights of its control points at all points.
-    fn factored(&self, net: &SplineNet) -> Result<(NumericFactor, Vec<PointWeights>), FactorizationError> {
+    /// The factored normal equations of a net.
+    fn factored(
+        &self,
+        net: &SplineNet,
+        bending: f64,
+        rows: &[PointWeights],
+    ) -> Result<NumericFactor, FactorizationError> {
         let [n1, n2] = net.counts();
         let index = |i: usize, j: usize| if n1 < n2 { (i * n2 + j, j * n1 + i) } else { (i * n2 + j, i * n2 + j) };
         let mut columns = vec![Vec::new(); n1 * n2];
@@ -193,23 +217,22 @@ impl Samples<'_> {
                 values[position] += value;
             }
         };
-        let rows: Vec<PointWeights> = self.places.iter().map(|place| self.row(net, *place)).collect();
         let share = 1.0 / rows.len() as f64;
-        for row in &rows {
+        for row in rows {
             for &(first, a) in row {
                 row.iter()
                     .filter(|(second, _)| *second <= first)
                     .for_each(|(second, b)| add(first, *second, share * a * b));
             }
         }
-        self.bending(net, share, &mut add);
-        Ok((Arc::new(SymbolicFactor::new(pattern, order)?).factorize(&values)?, rows))
+        self.bending(net, bending * share * share, &mut add);
+        Arc::new(SymbolicFactor::new(pattern, order)?).factorize(&values)
     }
 
-    /// Adds the lower entries of the bending, times λ h⁴/A with h² = A/n; `share`: 1/n.
-    fn bending(&self, net: &SplineNet, share: f64, add: &mut dyn FnMut(usize, usize, f64)) {
+    /// Adds the lower entries of the bending, times λ h⁴/A with h² = A/n; `factor`: λ/n².
+    fn bending(&self, net: &SplineNet, factor: f64, add: &mut dyn FnMut(usize, usize, f64)) {
         let [n1, n2] = net.counts();
-        let weight = BENDING * self.sides[0] * self.sides[1] * share * share;
+        let weight = self.sides[0] * self.sides[1] * factor;
         let [along, across] = [0, 1].map(|axis| {
             let places: Vec<f64> = net.bases()[axis].greville().into_iter().map(|t| self.sides[axis] * t).collect();
             bending_line(&places, self.sides[axis]).map(|rows| rows.tr_mul(&rows))
