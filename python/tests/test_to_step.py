@@ -69,6 +69,7 @@ def on_face(file, name):
         ("bracket.toml", 0.15, "", "seat"),
         ("ball_socket.toml", 0.02, "socket_", "seat"),
         ("taper.toml", 0.02, "stem_", "taper"),
+        ("roller.toml", 0.01, "roller_", "rolling"),
     ],
 )
 def test_nodes_of_the_shape_lie_on_the_surface_that_opencascade_reads(contact3d, tmp_path, scene, size, body, face):

@@ -137,8 +137,8 @@ impl Samples<'_> {
     }
 
     /// A net with corrections that bend little, then more, until no point is farther off than `goal`, or as long as no
-    /// waves come between the points: a net that cannot reach the points would pay for small gains there with waves where
-    /// there are none.
+    /// waves come between the points: a net that cannot reach the points would pay for small gains there with waves
+    /// where there are none.
     fn improved(&self, net: SplineNet, goal: f64) -> Result<Fit, FactorizationError> {
         let rows: Vec<PointWeights> = self.places.iter().map(|place| self.row(&net, *place)).collect();
         let mut best = self.measured(net, &rows);
