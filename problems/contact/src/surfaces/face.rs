@@ -6,8 +6,8 @@ use super::part::{Part, Source, rectangle};
 use crate::body::mesh::{CellFace, bounding_box};
 use crate::equilibrium::ContactProblem;
 use crate::linear::FactorizationError;
-use crate::mortar::doubled_area;
 use crate::mortar::vector::{cross, dot, length};
+use crate::mortar::{Facet, doubled_area};
 use thiserror::Error;
 
 /// Largest distance of a node from its surface that is always allowed, mm: what machining cannot make.
@@ -110,6 +110,11 @@ pub fn spline_faces(
     found
 }
 
+/// The angle between two directions of any length, degrees.
+fn between(a: [f64; 3], b: [f64; 3]) -> f64 {
+    length(cross(a, b)).atan2(dot(a, b)).to_degrees()
+}
+
 /// The surface of a part with points at the start and at the end.
 pub(super) fn spline_face(
     name: String,
@@ -124,21 +129,34 @@ pub(super) fn spline_face(
     let places: Vec<[f64; 2]> = places.iter().map(inside).collect();
     let points: Vec<[f64; 3]> = part.points.iter().map(|&point| end[point as usize]).collect();
     let place = |node: &u32| inside(&chart.place(start[*node as usize]));
+    let flat_normal =
+        |corners: &[u32]| doubled_area(&corners.iter().map(|&node| end[node as usize]).collect::<Vec<_>>());
+    let centre = |corners: &[u32]| {
+        let sum = corners.iter().map(place).fold([0.0; 2], |[a, b], [s, t]| [a + s, b + t]);
+        sum.map(|sum| sum / corners.len() as f64)
+    };
     // The largest angle between the normals of a facet and of a surface at its centre.
     let angle = |net: &SplineNet| {
         let angles = part.facets.iter().map(|facet| {
             let corners = facet.corners();
-            let places = corners.iter().map(place).fold([0.0; 2], |[a, b], [s, t]| [a + s, b + t]);
-            let surface = net.normal(places.map(|sum| sum / corners.len() as f64));
-            let flat = doubled_area(&corners.iter().map(|&node| end[node as usize]).collect::<Vec<_>>());
-            length(cross(surface, flat)).atan2(dot(surface, flat)).to_degrees()
+            between(net.normal(centre(corners)), flat_normal(corners))
         });
         angles.fold(0.0, f64::max)
     };
-    let has_waves = |net: &SplineNet| angle(net) > ANGLE;
+    let failed = |source| SurfaceError::Equations { face: name.clone(), source };
+    let base = chart.surface(corner, sides).map_err(failed)?;
+    // At a corner, the surface may be inclined to the base more than the facet is by the allowed angle.
+    let turns = |net: &SplineNet, facet: &Facet| {
+        let corners = facet.corners();
+        let flat = between(base.normal(centre(corners)), flat_normal(corners));
+        corners
+            .iter()
+            .map(|node| between(net.normal(place(node)), base.normal(place(node))))
+            .any(|own| own > flat + ANGLE)
+    };
+    let has_waves = |net: &SplineNet| angle(net) > ANGLE || part.facets.iter().any(|facet| turns(net, facet));
     let samples = Samples { places: &places, points: &points, sides, has_waves: &has_waves };
-    let fit = chart.surface(corner, sides).and_then(|base| samples.fit(base, GOAL * allowed));
-    let Fit { net, distances, .. } = fit.map_err(|source| SurfaceError::Equations { face: name.clone(), source })?;
+    let Fit { net, distances, .. } = samples.fit(base.clone(), GOAL * allowed).map_err(failed)?;
     let distance = distances.into_iter().fold(0.0, f64::max);
     if distance > allowed {
         return Err(SurfaceError::Distance { face: name, distance, allowed });
