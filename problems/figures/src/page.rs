@@ -108,6 +108,30 @@ pub fn with_section(html: &str, section: &Section) -> Option<String> {
     Some(format!("{}{heading}{}", &html[..start], &html[start + length..]))
 }
 
+/// The head of a page with its style.
+pub(super) fn head(title: &str, style: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            title { (title) }
+            style { (PreEscaped(style)) }
+        }
+    }
+}
+
+/// What a reader has to know before everything else.
+pub(super) fn warned(warnings: &[String]) -> Markup {
+    html! {
+        @if !warnings.is_empty() {
+            div.warnings role="note" {
+                strong { "Warnings" }
+                ul { @for warning in warnings { li { (warning) } } }
+            }
+        }
+    }
+}
+
 /// The heading of a section with its pieces.
 pub(super) fn headed(section: &Section) -> Markup {
     html! {
@@ -135,22 +159,12 @@ impl Page {
         let page = html! {
             (DOCTYPE)
             html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    title { (self.title) }
-                    style { (PreEscaped(STYLE)) }
-                }
+                (head(&self.title, STYLE))
                 body {
                     h1 { (self.title) }
                     p.lead { (self.lead) }
                     @if !self.origin.is_empty() { p.origin { (self.origin) } }
-                    @if !self.warnings.is_empty() {
-                        div.warnings role="note" {
-                            strong { "Warnings" }
-                            ul { @for warning in &self.warnings { li { (warning) } } }
-                        }
-                    }
+                    (warned(&self.warnings))
                     nav { @for (index, section) in self.sections.iter().enumerate() { a href={ "#part" (index) } { (section.title) } " " } }
                     @for (index, section) in self.sections.iter().enumerate() {
                         section id={ "part" (index) } {

@@ -1,7 +1,7 @@
 //! A page that is printed: A4, sections of full width, then sections in two columns; no script.
 
-use crate::page::{Section, headed};
-use maud::{DOCTYPE, PreEscaped, html};
+use crate::page::{Section, head, headed, warned};
+use maud::{DOCTYPE, html};
 
 /// A page for paper that needs no other file. It does not cut anything off: a caller that wants one sheet gives it no
 /// more than a sheet holds.
@@ -29,22 +29,12 @@ impl PaperPage {
         let page = html! {
             (DOCTYPE)
             html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    title { (self.title) }
-                    style { (PreEscaped(STYLE)) }
-                }
+                (head(&self.title, STYLE))
                 body {
                     h1 { (self.title) }
                     p.lead { (self.lead) }
                     p.origin { (self.origin) " " a href=(self.more.0) { (self.more.1) } }
-                    @if !self.warnings.is_empty() {
-                        div.warnings role="note" {
-                            strong { "Warnings" }
-                            ul { @for warning in &self.warnings { li { (warning) } } }
-                        }
-                    }
+                    (warned(&self.warnings))
                     @for section in &self.wide { section { (headed(section)) } }
                     div.columns { @for section in &self.columns { section { (headed(section)) } } }
                 }

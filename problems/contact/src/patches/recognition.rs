@@ -13,8 +13,6 @@ pub struct FacePart {
     /// Whether the outside of the body is that of the primitive, as on a shaft and not in a bore; of a plane, whether
     /// its normal points outwards.
     pub is_convex: bool,
-    /// Its facets.
-    pub facets: Vec<CellFace>,
 }
 
 /// The smooth parts of a face; `name` stands in messages.
@@ -25,7 +23,6 @@ pub fn face_parts(name: &str, mesh: &Mesh, faces: &[CellFace]) -> Result<Vec<Fac
     let part = |part: super::curved_face::SmoothPart| FacePart {
         is_convex: part.primitive.is_some_and(|(_, sign)| sign > 0.0),
         primitive: part.primitive.map(|(primitive, _)| primitive),
-        facets: part.facets.into_iter().map(|facet| faces[facet]).collect(),
     };
     Ok(CurvedFace::new(name, mesh, faces)?.parts.into_iter().map(part).collect())
 }

@@ -11,6 +11,7 @@ mod height_grid;
 pub(crate) mod jet;
 mod loads;
 mod mesh_surface;
+mod nearest_place;
 mod presets;
 mod profile;
 mod revolution;

@@ -8,6 +8,7 @@
 //! The curve runs with the outside on its right.
 
 use crate::error::SceneError;
+use crate::scene::nearest_place::nearest_place;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -15,10 +16,6 @@ use std::sync::Arc;
 const SMOOTH: f64 = 0.866_025_403_784_438_6;
 /// Points through which a polynomial gives a slope.
 const WINDOW: usize = 5;
-/// Parts of a piece at whose ends the search for its nearest point begins.
-const PARTS: usize = 8;
-/// Steps of the search.
-const STEPS: usize = 60;
 
 /// Points (ρ, z) of a meridian in their order, mm: from one end to the other, or closed where the last is the first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -272,47 +269,14 @@ impl Cubic {
         (a * d - b * c) / a.hypot(b).powi(3)
     }
 
-    /// The place of the point nearest to x: the best of some places, then bisection and Newton's method on (p − x)·p′.
+    /// The place of the point nearest to x.
     fn nearest(&self, x: [f64; 2]) -> f64 {
         let from = |t: f64| {
             let point = self.at(t);
             [point[0] - x[0], point[1] - x[1]]
         };
-        let square = |t: f64| from(t).iter().map(|part| part * part).sum::<f64>();
-        let place = |k: usize| k as f64 / PARTS as f64;
-        let best = (1..=PARTS).fold(0, |best, k| if square(place(k)) < square(place(best)) { k } else { best });
-        let slope = |t: f64| {
-            let (f, p) = (from(t), self.first(t));
-            f[0] * p[0] + f[1] * p[1]
-        };
-        let (mut low, mut high) = (place(best.saturating_sub(1)), place((best + 1).min(PARTS)));
-        if slope(low) >= 0.0 {
-            return low;
-        }
-        if slope(high) <= 0.0 {
-            return high;
-        }
-        let mut t = place(best).clamp(low, high);
-        for _step in 0..STEPS {
-            let value = slope(t);
-            if value == 0.0 {
-                return t;
-            }
-            if value < 0.0 {
-                low = t;
-            } else {
-                high = t;
-            }
-            let (f, p, q) = (from(t), self.first(t), self.second(t));
-            let change = value / (p[0] * p[0] + p[1] * p[1] + f[0] * q[0] + f[1] * q[1]);
-            let newton = t - change;
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - t).abs() <= 2.0 * f64::EPSILON {
-                return next;
-            }
-            t = next;
-        }
-        t
+        let product = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        nearest_place(|t| product(from(t), from(t)), |t| product(from(t), self.first(t)))
     }
 }
 

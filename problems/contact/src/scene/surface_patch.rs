@@ -3,6 +3,7 @@
 use crate::mortar::vector::{cross, dot, length, plus};
 use crate::mortar::{NODES, Quadratic};
 use crate::scene::foot::Foot;
+use crate::scene::nearest_place::nearest_place;
 use crate::scene::side::Side;
 use rstar::AABB;
 
@@ -14,8 +15,6 @@ const STILL: f64 = 1e-14;
 const BEYOND: f64 = 1e-9;
 /// Coordinates from which a projection has left the facet.
 const LOST: f64 = 8.0;
-/// Parts of an edge at whose ends the search for its nearest point begins.
-const PARTS: usize = 8;
 
 /// What lies beyond an edge of a facet.
 #[derive(Debug, Clone, Copy)]
@@ -217,32 +216,10 @@ impl Edge {
         (tangent, dot(away, across) / (size * size))
     }
 
-    /// The place of the point nearest to x: the best of some places, then bisection of (q − x)·q′.
+    /// The place of the point nearest to x.
     fn nearest(&self, x: [f64; 3]) -> f64 {
         let from = |t: f64| plus(self.at(t), -1.0, x);
-        let square = |t: f64| dot(from(t), from(t));
-        let place = |k: usize| k as f64 / PARTS as f64;
-        let best = (1..=PARTS).fold(0, |best, k| if square(place(k)) < square(place(best)) { k } else { best });
-        let slope = |t: f64| dot(from(t), self.first(t));
-        let (mut low, mut high) = (place(best.saturating_sub(1)), place((best + 1).min(PARTS)));
-        if slope(low) >= 0.0 {
-            return low;
-        }
-        if slope(high) <= 0.0 {
-            return high;
-        }
-        while high - low > f64::EPSILON {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if slope(middle) < 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        nearest_place(|t| dot(from(t), from(t)), |t| dot(from(t), self.first(t)))
     }
 }
 

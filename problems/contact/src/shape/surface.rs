@@ -13,6 +13,10 @@ impl SplineSurface {
         Self { bases }
     }
 
+    pub(crate) fn bases(&self) -> &[Basis; 2] {
+        &self.bases
+    }
+
     /// Control points per axis.
     pub fn counts(&self) -> [usize; 2] {
         [self.bases[0].count(), self.bases[1].count()]

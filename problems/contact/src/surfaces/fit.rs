@@ -91,7 +91,7 @@ impl Samples<'_> {
         let mut best: Option<Fit> = None;
         for along in [[true, false], [false, true], [true, true]] {
             let knots = [0, 1].map(|axis| if along[axis] { &middles[axis][..] } else { &[] });
-            let counts = fit.net.counts();
+            let counts = fit.net.surface().counts();
             let size = (counts[0] + knots[0].len()) * (counts[1] + knots[1].len());
             let is_enough = |found: &Fit| found.worst() <= goal || ENOUGH * found.worst() <= fit.worst();
             let has_ended = along == [true, true] && best.as_ref().is_some_and(is_enough);
@@ -201,7 +201,7 @@ impl Samples<'_> {
         bending: f64,
         rows: &[PointWeights],
     ) -> Result<NumericFactor, FactorizationError> {
-        let [n1, n2] = net.counts();
+        let [n1, n2] = net.surface().counts();
         let index = |i: usize, j: usize| if n1 < n2 { (i * n2 + j, j * n1 + i) } else { (i * n2 + j, i * n2 + j) };
         let mut columns = vec![Vec::new(); n1 * n2];
         let mut order = vec![0; n1 * n2];
@@ -231,7 +231,7 @@ impl Samples<'_> {
 
     /// Adds the lower entries of the bending, times λ h⁴/A with h² = A/n; `factor`: λ/n².
     fn bending(&self, net: &SplineNet, factor: f64, add: &mut dyn FnMut(usize, usize, f64)) {
-        let [n1, n2] = net.counts();
+        let [n1, n2] = net.surface().counts();
         let weight = self.sides[0] * self.sides[1] * factor;
         let [along, across] = [0, 1].map(|axis| {
             let places: Vec<f64> = net.bases()[axis].greville().into_iter().map(|t| self.sides[axis] * t).collect();
@@ -251,7 +251,7 @@ impl Samples<'_> {
 
     fn row(&self, net: &SplineNet, place: [f64; 2]) -> PointWeights {
         let [first, second] = [0, 1].map(|axis| weights(&net.bases()[axis], place[axis]).collect::<Vec<_>>());
-        let count = net.counts()[1];
+        let count = net.surface().counts()[1];
         let all = first.iter().flat_map(|(i, a)| second.iter().map(move |(j, b)| (i * count + j, a * b)));
         all.filter(|(_, weight)| *weight != 0.0).collect()
     }

@@ -2,7 +2,7 @@
 
 use crate::mortar::vector::{cross, dot, length, plus};
 use crate::scalar::{Dual, Scalar};
-use crate::shape::Basis;
+use crate::shape::{Basis, SplineSurface};
 
 /// Degree of the surfaces.
 const DEGREE: usize = 3;
@@ -14,7 +14,7 @@ const STILL: f64 = 1e-14;
 /// A clamped B-spline surface of degree 3 over [0, 1]², with control points in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplineNet {
-    bases: [Basis; 2],
+    surface: SplineSurface,
     points: Vec<[f64; 3]>,
 }
 
@@ -41,22 +41,12 @@ impl SplineNet {
         let inner = |count: usize| (1..count).map(move |knot| knot as f64 / count as f64);
         let bases = intervals.map(|count| Basis::clamped_at(DEGREE, inner(count)));
         let count = bases.iter().map(Basis::count).product();
-        Self { bases, points: vec![place; count] }
+        Self { surface: SplineSurface::new(bases), points: vec![place; count] }
     }
 
-    /// Control points along both parameters.
-    pub fn counts(&self) -> [usize; 2] {
-        [self.bases[0].count(), self.bases[1].count()]
-    }
-
-    /// Degrees along both parameters.
-    pub fn degrees(&self) -> [usize; 2] {
-        [self.bases[0].degree(), self.bases[1].degree()]
-    }
-
-    /// Knots along both parameters, repetitions listed.
-    pub fn knots(&self) -> [&[f64]; 2] {
-        [self.bases[0].knots(), self.bases[1].knots()]
+    /// Counts, degrees and knots along both parameters.
+    pub fn surface(&self) -> &SplineSurface {
+        &self.surface
     }
 
     /// Control points, index i·n₂ + j, mm.
@@ -65,7 +55,7 @@ impl SplineNet {
     }
 
     pub(super) fn bases(&self) -> &[Basis; 2] {
-        &self.bases
+        self.surface.bases()
     }
 
     pub(super) fn add(&mut self, changes: impl Fn(usize) -> [f64; 3]) {
@@ -75,10 +65,10 @@ impl SplineNet {
     /// The point at parameters in [0, 1]².
     pub(crate) fn at<T: Scalar>(&self, place: [T; 2]) -> [T; 3] {
         let mut sum = [T::constant(0.0); 3];
-        let second: Vec<(usize, T)> = weights(&self.bases[1], place[1]).collect();
-        for (i, a) in weights(&self.bases[0], place[0]) {
+        let second: Vec<(usize, T)> = weights(&self.bases()[1], place[1]).collect();
+        for (i, a) in weights(&self.bases()[0], place[0]) {
             for &(j, b) in &second {
-                let point = self.points[i * self.bases[1].count() + j];
+                let point = self.points[i * self.bases()[1].count() + j];
                 (0..3).for_each(|axis| sum[axis] += a * b * T::constant(point[axis]));
             }
         }
@@ -125,8 +115,8 @@ impl SplineNet {
 
     /// This surface with further knots along both parameters, ascending.
     pub(super) fn refined(&self, knots: [&[f64]; 2]) -> Self {
-        let [(first, rows), (second, columns)] = [0, 1].map(|axis| insertion(&self.bases[axis], knots[axis]));
-        let count = self.bases[1].count();
+        let [(first, rows), (second, columns)] = [0, 1].map(|axis| insertion(&self.bases()[axis], knots[axis]));
+        let count = self.bases()[1].count();
         let mut points = Vec::with_capacity(rows.len() * columns.len());
         for row in &rows {
             for column in &columns {
@@ -137,7 +127,7 @@ impl SplineNet {
                 points.push(sum);
             }
         }
-        Self { bases: [first, second], points }
+        Self { surface: SplineSurface::new([first, second]), points }
     }
 }
 
@@ -172,7 +162,7 @@ mod tests {
 
     fn wavy() -> SplineNet {
         let mut net = SplineNet::at_one_place([1; 2], [0.0; 3]).refined([&[0.3, 0.5], &[0.6]]);
-        let columns = net.counts()[1];
+        let columns = net.surface().counts()[1];
         net.add(|index| {
             let [i, j] = [index / columns, index % columns].map(|index| index as f64);
             [2.0 * i + 0.1 * j, 3.0 * j, (1.3 * i).sin() + (0.7 * j).cos()]
@@ -186,7 +176,7 @@ mod tests {
         let cases: [[&[f64]; 2]; 3] = [[&[0.1, 0.4, 0.45], &[]], [&[], &[0.2, 0.9]], [&[0.75], &[0.3, 0.8]]];
         for knots in cases {
             let refined = net.refined(knots);
-            assert_eq!(refined.counts(), [6 + knots[0].len(), 5 + knots[1].len()]);
+            assert_eq!(refined.surface().counts(), [6 + knots[0].len(), 5 + knots[1].len()]);
             for index in 0..200 {
                 let place = [0.618_034, 0.754_878].map(|step| (f64::from(index) * step).fract());
                 let change = plus(net.at(place), -1.0, refined.at(place));

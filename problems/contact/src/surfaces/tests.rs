@@ -108,7 +108,7 @@ fn surfaces_do_not_depend_on_units() {
     let start = scale(mesh.nodes());
     let source = Source { mesh: &mesh, start: &start };
     let other = spline_face("a".into(), &source.parts(&face)[0], [&start, &scale(&end)], 25.4e-3).expect("a surface");
-    assert_eq!(one.net.counts(), other.net.counts());
+    assert_eq!(one.net.surface().counts(), other.net.surface().counts());
     for (a, b) in one.net.points().iter().zip(other.net.points()) {
         // Rounding, times the condition of the normal equations.
         assert!((0..3).all(|axis| (25.4 * a[axis] - b[axis]).abs() < 1e-6), "{a:?} {b:?}");

@@ -42,7 +42,8 @@ pub fn files(problem: &ContactProblem, controls: &[f64]) -> Result<(Vec<OutputFi
 fn file(problem: &ContactProblem, body: usize, faces: &[SplineFace]) -> Result<OutputFile, Failure> {
     let patch = |face: &SplineFace| {
         let net = &face.net;
-        SplinePatch::new(net.degrees(), net.knots().map(<[f64]>::to_vec), net.points().to_vec()).map_err(failure)
+        SplinePatch::new(net.surface().degrees(), net.surface().knots().map(<[f64]>::to_vec), net.points().to_vec())
+            .map_err(failure)
     };
     let patches = faces.iter().map(patch).collect::<Result<Vec<_>, Failure>>()?;
     let words = scene_words::body(&problem.scene.bodies[body].name);
@@ -59,7 +60,7 @@ fn file(problem: &ContactProblem, body: usize, faces: &[SplineFace]) -> Result<O
     let record = |face: &SplineFace| FaceRecord {
         face: face.name.clone(),
         nodes: face.nodes,
-        control_points: face.net.counts(),
+        control_points: face.net.surface().counts(),
         distance: face.distance,
         allowed: face.allowed,
         angle: face.angle,

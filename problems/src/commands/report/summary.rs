@@ -177,7 +177,7 @@ fn assumed(loaded: &LoadedScene, problem: &ContactProblem) -> Section {
         false => "Contact without friction.".into(),
     });
     if contacts.iter().any(|contact| contact.obstacle().is_some()) {
-        lines.push("Obstacles are rigid and have their exact form.".into());
+        lines.push("Obstacles are rigid and have the form that the scene gives them.".into());
     }
     if contacts.iter().any(ContactScene::is_tied) {
         lines.push("Glued faces do not part.".into());

@@ -183,24 +183,32 @@ impl FormError {
 pub fn section(folder: &Path, controls: &[f64]) -> Section {
     match known(folder, controls) {
         Some(found) => found.group().section(),
-        None => Section::new(TITLE, vec![Block::Text(format!("Not computed. The command: {}", command(folder)))]),
+        None => of_text(not_computed(folder)),
     }
 }
 
 /// The section of a page that says no more than what is allowed.
 pub fn short_section(folder: &Path, controls: &[f64]) -> Section {
-    let words = || format!("Not computed. The command: {}", command(folder));
-    Section::new(TITLE, vec![Block::Text(known(folder, controls).map_or_else(words, |found| found.short()))])
+    of_text(known(folder, controls).map_or_else(|| not_computed(folder), |found| found.short()))
+}
+
+/// The section of one paragraph.
+pub fn of_text(text: String) -> Section {
+    Section::new(TITLE, vec![Block::Text(text)])
+}
+
+fn not_computed(folder: &Path) -> String {
+    format!("Not computed. The command: {}", command(folder))
 }
 
 /// What a folder says of the shape with these controls.
-pub fn known(folder: &Path, controls: &[f64]) -> Option<FormError> {
+fn known(folder: &Path, controls: &[f64]) -> Option<FormError> {
     let text = read_text(&folder.join(FORM_ERROR), LARGEST_FILE).ok()?;
     serde_json::from_str::<FormError>(&text).ok().filter(|known| known.controls == controls)
 }
 
 /// The command that computes it, as it is typed in a shell.
-pub fn command(folder: &Path) -> String {
+fn command(folder: &Path) -> String {
     let path = |path: &Path| quoted(path.display().to_string());
     let (scene, run) = (path(&folder.join(SCENE)), path(folder));
     format!("contact3d {scene} tolerance --run {run} --amplitude MM --wavelength MM")

@@ -5,8 +5,8 @@ use crate::commands::folder::{Folder, SUMMARY};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::output::notice;
 use crate::commands::report::{origin, stamp};
-use crate::commands::tolerance::form_error::{FORM_ERROR, FormError, TITLE};
-use figures::page::{Block, Page, Section, with_section};
+use crate::commands::tolerance::form_error::{FORM_ERROR, FormError, TITLE, of_text};
+use figures::page::{Page, with_section};
 use scene_file::read_text;
 
 /// Largest page that is read, bytes.
@@ -32,8 +32,7 @@ pub fn page(found: &FormError, loaded: &LoadedScene) -> Result<String, Failure> 
 /// # Errors
 /// [`Failure`] of the files.
 pub fn renew(folder: &Folder, found: &FormError) -> Result<(), Failure> {
-    let short = Section::new(TITLE, vec![Block::Text(found.short())]);
-    for (name, section) in [("report.html", found.group().section()), (SUMMARY, short)] {
+    for (name, section) in [("report.html", found.group().section()), (SUMMARY, of_text(found.short()))] {
         let path = folder.path().join(name);
         if !path.exists() {
             continue;
