@@ -5,7 +5,7 @@ import meshio
 import numpy as np
 from drawing import columns
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgb
+from matplotlib.colors import BoundaryNorm, to_rgb
 from matplotlib.patches import Patch
 
 CASES = ["upright", "forward", "back"]
@@ -24,17 +24,20 @@ NAMED = {
 
 
 def draw_pressures(file, results):
+    """Start and optimum on one scale, whose steps are finer where the pressures of the optimum lie."""
+    found = {shape: [columns(results / f"pressure_{shape}_case_{case}.csv") for case in (1, 2, 3)] for shape in SHAPES}
+    top = max(table["pressure_MPa"].max() for tables in found.values() for table in tables)
+    levels = [0, 1, 5, 10, 15, 20, 25, 30, 60, 90, 120, 150, np.ceil(top / 10) * 10]
+    norm = BoundaryNorm(levels, plt.get_cmap().N)
     figure, axes = plt.subplots(2, 3, figsize=(7.4, 2.9), sharex=True, sharey=True, layout="constrained")
     for row, shape in zip(axes, SHAPES):
-        found = [columns(results / f"pressure_{shape}_case_{case}.csv") for case in (1, 2, 3)]
-        top = max(table["pressure_MPa"].max() for table in found)
-        for axis, name, table in zip(row, CASES, found):
+        for axis, name, table in zip(row, CASES, found[shape]):
             pressure = table["pressure_MPa"]
-            drawn = axis.tricontourf(table["x1_mm"], table["x2_mm"], pressure, levels=np.linspace(0, top, 17))
+            drawn = axis.tricontourf(table["x1_mm"], table["x2_mm"], pressure, levels=levels, norm=norm)
             axis.set_title(f"{WORDS[shape]}, {name}: peak {pressure.max():.1f}", fontsize=9)
             axis.set_aspect("equal")
-        figure.colorbar(drawn, ax=row, format="%.0f", ticks=np.linspace(0, top, 5), label="MPa")
         row[0].set_ylabel("x₂, mm")
+    figure.colorbar(drawn, ax=axes, format="%.0f", ticks=levels, label="MPa")
     for axis in axes[1]:
         axis.set_xlabel("x₁, mm")
     figure.savefig(file, dpi=100)

@@ -36,7 +36,7 @@ RUNS = {
     "signorini35": ["signorini3d --mesh 35 --subdomains 5 --degrees 7 --control-points 8x8 --out OUT"],
     "friction": ["signorini3d compare --out OUT"],
     "hertz": ["hertz3d --out OUT"],
-    "seat": ["contact3d problems/scenes/jack_seat.toml --single --out OUT"],
+    "seat": ["contact3d problems/scenes/jack_seat.toml --out OUT"],
     "toy": ["toy2d --out OUT"],
     "lug": ["contact3d problems/scenes/lug_cases.toml evaluate --out OUT"],
     "bracket": ["contact3d problems/scenes/bracket.toml --out OUT"],

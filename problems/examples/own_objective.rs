@@ -2,7 +2,7 @@
 //! `cargo run --release -p problems --example own_objective`.
 //!
 //! The cost is the mean square of the friction traction, Σ|λ_T|²/A / ΣA in MPa², over the contact surface of the
-//! paper's Example 5.2. It is summed over two load cases. `docs/tutorial_objective.md` explains the steps.
+//! paper's Example 5.2. It is summed over two load cases. `docs/plug_in_your_problem.md` explains the steps.
 
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::scene::hertz;

@@ -6,11 +6,11 @@
 
 The problem (docs/exchange.md):
 
-    K u = f + Hᵀ r,   w = H u + (g, 0, 0),   0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ μ r_N,   w_T = −κ r_T
+    K u = f + Hᵀ r,   w = H u + (g, s),   0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ μ r_N,   w_T = −κ r_T
 
 `scipy` is an own semismooth Newton method on all displacements and forces (Alart and Curnier 1991), which needs numpy and scipy
 only. `admm` and `nsn_ac` are those of Siconos (Debian: python3-siconos), in the global form of FCLIB: M v = q + H r, u = Hᵀ v + b with
-M = K, q = f, H the transposed contact matrix, b = (g, 0, 0), displacements in the place of velocities.
+M = K, q = f, H the transposed contact matrix, b = (g, s), displacements in the place of velocities.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from scipy.sparse.linalg import splu
 
 
 def read(folder):
-    """K, f, H, b = (g, 0, 0) per node, μ per node, areas, tangents of the rows."""
+    """K, f, H, b = (gap, two slips) per node, μ per node, areas, tangents of the rows."""
     folder = Path(folder) / "friction"
     lists = json.loads((folder / "problem.json").read_text())
     stiffness = scipy.io.mmread(folder / lists["stiffness"]).tocsc()
@@ -33,6 +33,7 @@ def read(folder):
     load, gaps = np.array(lists["load"]), np.array(lists["gaps"])
     offset = np.zeros(3 * len(gaps))
     offset[::3] = gaps
+    offset.reshape(-1, 3)[:, 1:] = lists["slips"]
     assert stiffness.shape == (len(load),) * 2 and contact.shape == (len(offset), len(load))
     return stiffness, load, contact, offset, np.array(lists["friction"]), np.array(lists["areas"]), np.array(lists["tangents"])
 

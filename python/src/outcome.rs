@@ -32,7 +32,7 @@ impl<'py> IntoPyObject<'py> for RunOutcome {
         dict.set_item("value", report.value)?;
         dict.set_item("subgradient", subgradient.map(|subgradient| convert::array(py, &subgradient)))?;
         dict.set_item("reason", reason(&report.termination))?;
-        dict.set_item("confirmed", report.is_proved())?;
+        dict.set_item("confirmed", report.is_confirmed())?;
         dict.set_item("message", message(&report.termination))?;
         dict.set_item("advice", report.advice())?;
         dict.set_item("convex", report.certificate.as_ref().is_some_and(|certificate| certificate.convex))?;

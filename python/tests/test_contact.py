@@ -159,7 +159,7 @@ def codes(found):
 
 
 def test_results_have_the_warnings_of_the_commands():
-    # docs/settings.md names the first two.
+    # docs/warnings.md names the first two.
     state = contact.Scene.from_toml(SCENES / "signorini.toml").evaluate()
     assert {"large-displacement", "large-strain"} <= codes(state)
     body = {

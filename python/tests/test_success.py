@@ -24,7 +24,7 @@ def test_success_is_never_claimed_wrongly(collection, tells, least):
         solved += reached
         reasons[result.reason] += 1
         assert reached or not result.success, name
-        # An optimum that is not proved is called stationary, but no success.
+        # An optimum that is not confirmed is called stationary, but no success.
         assert result.success == (result.reason == "stationary")
     # Two of 44 are not solved. The last bits, and with them the processor, decide a problem or two.
     assert solved >= 42 and reasons["stationary"] >= least - 2, (solved, reasons)

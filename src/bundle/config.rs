@@ -61,7 +61,7 @@ pub enum AccuracyPolicy {
 }
 
 impl AccuracyPolicy {
-    /// Accuracy on demand with the numbers measured in docs/bundle.md: between 1e-12 and 1e-2, a tenth of the predicted
+    /// Accuracy on demand (docs/bundle.md, rule 4): between 1e-12 and 1e-2, a tenth of the predicted
     /// decrease.
     pub const ON_DEMAND: Self = Self::OnDemand { tightest: 1e-12, coarsest: 1e-2, factor: 0.1 };
 }

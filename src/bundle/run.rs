@@ -249,7 +249,7 @@ impl Run<'_, '_> {
         proposal
     }
 
-    /// The end by a limit, unless the center has been proved stationary before.
+    /// The end by a limit, unless the center has been confirmed before.
     fn standing_proof(&mut self, limit: Termination) -> Ending {
         self.proposers.standing_proof().unwrap_or_else(|| limit.into())
     }

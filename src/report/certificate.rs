@@ -53,7 +53,7 @@ pub struct Certificate {
     /// Nonlinear constraints with the linearizations that have a multiplier, where there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub constraints: Option<ConstraintProof>,
-    /// Outputs and Jacobian behind the cuts, where the composite model proved the point stationary.
+    /// Outputs and Jacobian behind the cuts, where the composite model confirmed the point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub composite: Option<CompositeProof>,
 }

@@ -84,8 +84,8 @@ impl Report {
         self.constraints.iter().all(|constraint| constraint.satisfied)
     }
 
-    /// Whether the end is proved stationary, and all nonlinear constraints are satisfied there.
-    pub fn is_proved(&self) -> bool {
+    /// Whether the end is confirmed as stationary, and all nonlinear constraints are satisfied there.
+    pub fn is_confirmed(&self) -> bool {
         self.termination.is_confirmed() && self.is_feasible()
     }
 
@@ -136,7 +136,7 @@ impl fmt::Display for Report {
         let trials = &counts.trials;
         writeln!(
             f,
-            "             trial points: {} of the cuts, {} of the curved model, {} of the composite model, {} for the proof",
+            "             trial points: {} of the cuts, {} of the curved model, {} of the composite model, {} for the confirmation",
             trials.cuts, trials.curved_model, trials.composite_model, trials.confirmation
         )?;
         if counts.jacobians > 0 {

@@ -47,7 +47,7 @@ pub enum Origin {
     CurvedModel,
     /// The composite model proposed the point.
     CompositeModel,
-    /// Nobody: the point lies next to the center, for the proof of an end.
+    /// Nobody: the point lies next to the center, for the confirmation of an end.
     Confirmation,
 }
 
@@ -185,7 +185,7 @@ pub struct TrialCounts {
     pub curved_model: usize,
     /// Number of trial points of the composite model.
     pub composite_model: usize,
-    /// Points next to the center, for the proof of an end.
+    /// Points next to the center, for the confirmation of an end.
     #[serde(default)]
     pub confirmation: usize,
 }

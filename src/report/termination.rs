@@ -44,7 +44,7 @@ pub enum Termination {
         end: String,
     },
     /// The point is feasible and no model finds anything lower, but the gradients of the active constraints cancel or
-    /// vanish: multipliers need not exist, and nothing is proved.
+    /// vanish: multipliers need not exist, and nothing is confirmed.
     DegenerateConstraints {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
@@ -153,23 +153,26 @@ impl fmt::Display for Termination {
             Self::Stationary { gap: Some(gap), .. } => {
                 write!(
                     f,
-                    "stationary, confirmed: the cuts of the convex objective leave {gap:.1e} to its minimum within reach"
+                    "confirmed stationary: the cuts of the convex objective leave {gap:.1e} to its minimum within reach"
                 )
             }
             Self::Stationary { radius: 0.0, gap: None } => {
                 write!(
                     f,
-                    "stationary, confirmed by the derivatives at the point itself (a local optimum need not be the best)"
+                    "confirmed stationary by the derivatives at the point itself (a local optimum need not be the best)"
                 )
             }
             Self::Stationary { radius, gap: None } => {
-                write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
+                write!(f, "confirmed stationary by cuts within relative distance {radius:.1e}")
             }
             Self::StationaryUnconfirmed { undecided: Some(variable), .. } => {
-                write!(f, "stationary, unconfirmed: nothing can be said about variable {variable} (counted from 0)")
+                write!(
+                    f,
+                    "stationary by the model alone: nothing can be said about variable {variable} (counted from 0)"
+                )
             }
             Self::StationaryUnconfirmed { radius, .. } => {
-                write!(f, "stationary, unconfirmed: active cuts reach out to relative distance {radius:.1e}")
+                write!(f, "stationary by the model alone: active cuts reach out to relative distance {radius:.1e}")
             }
             Self::Infeasible { violation } => {
                 write!(
@@ -181,7 +184,7 @@ impl fmt::Display for Termination {
                 write!(f, "constraint {constraint} (counted from 0) is violated by {violation:.1e}; {end}")
             }
             Self::DegenerateConstraints { .. } => {
-                write!(f, "degenerate constraints: nothing lower was found, but no multipliers prove it")
+                write!(f, "degenerate constraints: nothing lower was found, but no multipliers confirm it")
             }
             Self::NoiseLimit { estimate } => write!(f, "noise limit: values are uncertain by about {estimate:.1e}"),
             Self::StepTooShort { predicted_decrease } => {

@@ -225,9 +225,9 @@ fn degenerate_constraints_are_never_confirmed() {
         let start: Vec<f64> = jitters(&[0.5, 0.5], seed).map(|entry| 0.5 + 0.2 * entry).collect();
         let report = minimize(&cusp, Polyhedron::unbounded(2), &start);
         let end = &report.termination;
-        let unproved =
+        let unconfirmed =
             matches!(end, Termination::DegenerateConstraints { .. } | Termination::StationaryUnconfirmed { .. });
-        assert!(unproved, "seed {seed}: {report}");
+        assert!(unconfirmed, "seed {seed}: {report}");
     }
     let report = minimize(&square, Polyhedron::unbounded(1), &[1.0]);
     assert!(matches!(report.termination, Termination::DegenerateConstraints { .. }), "{report}");

@@ -97,7 +97,7 @@ fn joined_inequalities_are_solved_at_least_as_often_as_by_the_penalty_and_with_f
 
 /// Largest eigenvalue of A₀ + Σ x_k A_k at most 1, where the objective is linear.
 #[test]
-fn limits_on_eigenvalues_are_proved_where_convexity_is_declared() {
+fn limits_on_eigenvalues_are_confirmed_where_convexity_is_declared() {
     for seed in 0..10 {
         let (n, m) = (6, 8);
         let mut matrices: Vec<Matrix> = vec![];

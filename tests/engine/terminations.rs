@@ -16,7 +16,7 @@ fn stationary_and_confirmed() {
     let report = minimize(&distance_1(v(&[1.0, -2.0, 3.0])), None, &[0.5; 3]);
     assert!(report.termination.is_confirmed(), "{report}");
     assert!(report.value < 1e-9);
-    assert!(report.to_string().contains("stationary, confirmed"), "{report}");
+    assert!(report.to_string().contains("confirmed stationary"), "{report}");
 }
 
 #[test]

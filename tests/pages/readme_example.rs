@@ -1,10 +1,7 @@
 //! The code on the pages: that of README.md stands in this file and runs, that of docs/plug_in_your_problem.md in an
 //! example.
 
-use nonsmooth::composite::Maximum;
-use nonsmooth::{
-    BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, FnObjective, Matrix, Polyhedron, Vector,
-};
+use nonsmooth::{BundleTrust, BundleTrustConfig, Convexity, FnObjective, Polyhedron, Vector};
 
 #[test]
 fn closure_over_a_box() -> Result<(), Box<dyn std::error::Error>> {
@@ -21,18 +18,6 @@ fn closure_over_a_box() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-#[test]
-fn both_pieces_at_once() -> Result<(), Box<dyn std::error::Error>> {
-    let theta = CompositeFunction::new(2, Maximum, |x: &Vector| {
-        let outputs = Vector::from_vec(vec![x.norm_squared(), 4.0 - x[0] - x[1]]);
-        (outputs, Matrix::from_row_slice(2, 2, &[2.0 * x[0], 2.0 * x[1], -1.0, -1.0]))
-    });
-    let report = BundleTrust::new(BundleTrustConfig::default())?.minimize(&theta, Vector::zeros(2))?;
-    assert!((report.value - 2.0).abs() < 1e-6, "{report}");
-    assert!(report.termination.is_confirmed() && report.counts.evaluations < 10, "{report}");
-    Ok(())
-}
-
 /// The blocks of Rust on a page.
 fn rust_blocks(page: &str) -> Vec<&str> {
     page.split("```rust\n").skip(1).filter_map(|rest| rest.split("\n```").next()).collect()
@@ -41,9 +26,8 @@ fn rust_blocks(page: &str) -> Vec<&str> {
 #[test]
 fn code_of_the_readme_is_the_code_tested_here() {
     let tested = include_str!("readme_example.rs").replace(' ', "");
-    let blocks = rust_blocks(include_str!("../../README.md"));
-    assert_eq!(blocks.len(), 2);
-    for line in blocks.iter().flat_map(|block| block.lines()) {
+    let [block] = rust_blocks(include_str!("../../README.md"))[..] else { panic!("one program") };
+    for line in block.lines() {
         let printed_or_imported = line.starts_with("println!") || line.starts_with("use ") || line.starts_with("//");
         assert!(printed_or_imported || tested.contains(&line.replace(' ', "")), "README.md: {line}");
     }

@@ -1,10 +1,11 @@
-//! 3D contact with Coulomb friction between an optimized elastic body and an obstacle or a second body.
+//! 3D contact with Coulomb friction of elastic bodies, some of them with a shape that is optimized, among each other
+//! and with rigid obstacles.
 //!
-//! The controls α move the nodes of the lower body, x = x₀ + N α: heights of its surface, or points of a lattice around
-//! it. The state y = S(α) holds the contact
-//! forces of the equilibrium. The cost rates the contact pressure. S is nonsmooth where nodes open, close, stick or
-//! slip; [`contact_shape::ContactShape`] returns one element of its coderivative by an adjoint solve. Units are N, mm,
-//! MPa. The equations are in `docs/method.md` of the repository.
+//! The controls α move the nodes of one or several bodies, x = x₀ + X α, by lattices of control points; heights of a
+//! face of a block are one of them. The state y = S(α) holds the contact forces of the equilibrium. The cost is a
+//! quantity of the states. S is nonsmooth where nodes open, close, stick or slip; [`contact_shape::ContactShape`]
+//! returns one element of its coderivative by an adjoint solve. Units are N, mm, MPa. The equations are in
+//! `docs/method.md` of the repository.
 //!
 //! # Θ of a scene
 //!

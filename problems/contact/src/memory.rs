@@ -177,8 +177,7 @@ mod tests {
 
     #[test]
     fn estimates_are_near_the_measured_peaks() {
-        // Measured (docs/scaling.md): 0.65, 3.6, 8.5 and 2.2 GiB; 1.22 GiB with a Jacobian of 64 columns
-        // (docs/results.md).
+        // Measured (docs/measurements.md): 0.65, 3.6, 8.5 and 2.2 GiB; 1.22 GiB with a Jacobian of 64 columns.
         for (mesh, subdomains, kind, columns, measured) in [
             (35, 5, SolverKind::Newton, 0, 0.72e9),
             (35, 5, SolverKind::Newton, 64, 1.31e9),

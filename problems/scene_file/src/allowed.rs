@@ -35,6 +35,53 @@ pub(super) fn words(node: &Node<'_>) -> String {
     format!("{kind}{}{or_text}{unit}", range(node))
 }
 
+/// Moduli of bounds that tell something of a field; others only keep numbers away from overflow.
+const TELLING: std::ops::RangeInclusive<f64> = 1e-6..=1e5;
+
+/// What is allowed at a place, as briefly as a list of fields needs it: without the bounds that keep numbers from
+/// overflow.
+pub(super) fn brief(node: &Node<'_>) -> String {
+    format!(
+        "{}{}",
+        values(node, ""),
+        node.text("x-unit").filter(|unit| unit != "1").map_or_else(String::new, |unit| format!(", {unit}"))
+    )
+}
+
+/// Values at a place, with the ending of their number; lists in lists with the lengths of both.
+fn values(node: &Node<'_>, plural: &str) -> String {
+    if let Some(items) = node.items() {
+        return match node.length() {
+            Some(count) if items.items().is_some() => format!("{count}×{}", values(&items, "s")),
+            Some(count) => format!("{count} {}", values(&items, "s")),
+            None => format!("list of {}", values(&items, "s")),
+        };
+    }
+    let kind = match (node.is("integer"), node.is("number"), node.is("string"), node.is("boolean")) {
+        (true, _, true, _) => format!("integer{plural} or text{plural}"),
+        (true, ..) => format!("integer{plural}"),
+        (_, true, ..) => format!("number{plural}"),
+        (.., true) => "true/false".to_owned(),
+        (_, _, true, _) if node.names().is_empty() => format!("text{plural}"),
+        _ => return words(node),
+    };
+    kind + &brief_range(node)
+}
+
+/// The telling bounds of a number.
+fn brief_range(node: &Node<'_>) -> String {
+    let telling = |value: &f64| *value == 0.0 || TELLING.contains(&value.abs());
+    let bound = |word: &str| node.keyword(word).and_then(Value::as_f64).filter(telling).map(short);
+    let low = bound("minimum").map(|low| (low, "≥")).or_else(|| bound("exclusiveMinimum").map(|low| (low, ">")));
+    let high = bound("maximum").map(|high| (high, "≤")).or_else(|| bound("exclusiveMaximum").map(|high| (high, "<")));
+    match (low, high) {
+        (Some((low, "≥")), Some((high, "≤"))) => format!(" {low}…{high}"),
+        (low, high) => {
+            [low, high].into_iter().flatten().map(|(value, sign)| format!(" {sign}{value}")).collect::<String>()
+        }
+    }
+}
+
 /// The range of a number, in words.
 pub(super) fn range(node: &Node<'_>) -> String {
     let bound =

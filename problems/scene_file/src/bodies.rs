@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySection {
-    /// Its name, by which contacts, load cases and regions refer to it. Default "body" for the only one.
+    /// Its name. Default "body" for the only one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// A block of bricks, in place of a mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub block: Option<BlockSection>,
-    /// A Gmsh file beside the scene file, in place of a block. Its physical surfaces name faces, physical volumes parts
-    /// of other material, physical points and curves sets of nodes. Default none.
+    /// A Gmsh file beside the scene file, in place of a block. Physical surfaces name faces, physical volumes parts,
+    /// physical points and curves sets of nodes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<String>,
     /// Unit of lengths in the mesh file.
@@ -45,7 +45,7 @@ pub struct BodySection {
     pub lattice: Option<LatticeSection>,
 }
 
-/// A block of bricks over a rectangle, with the faces x1-min, x1-max, x2-min, x2-max, bottom and top.
+/// A block of bricks over a rectangle, with the faces x1-min, x1-max, x2-min, x2-max, bottom, top.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockSection {
@@ -60,8 +60,7 @@ pub struct BlockSection {
     #[serde(default = "twelve")]
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub bricks: [usize; 3],
-    /// Subdomains along x1, x2, x3; divisors of the bricks. Default 2 per edge, or, where 2 does not divide the bricks,
-    /// the divisor that leaves closest to 6 bricks.
+    /// Subdomains along x1, x2, x3; divisors of the bricks. Default 2, or the divisor that leaves closest to 6 bricks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub subdomains: Option<[usize; 3]>,

@@ -27,38 +27,36 @@ pub struct ContactSection {
     /// The master face, on another body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub master: Option<FaceSection>,
-    /// Two faces in place of slave and master: the slave is the face with the smaller product of Young's modulus and
-    /// mean width of the facets, the softer and finer side.
+    /// Two faces in place of slave and master: the softer and finer one, with the smaller product of Young's modulus
+    /// and mean width of facets, becomes the slave.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faces: Option<[FaceSection; 2]>,
     /// A rigid obstacle in place of a master face.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<ObstacleSection>,
-    /// Whether the faces are glued as they lie, so that they neither slide nor part.
+    /// Whether the faces are glued as they lie.
     pub tied: bool,
     /// Coulomb friction coefficient. Default that of the scene; none between glued faces.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
     pub friction: Option<f64>,
-    /// Along which normals contact acts: those of the obstacle at the points nearest to the contact nodes, between two
-    /// bodies the averaged ones of the slave face; or x3 as in the paper.
+    /// Along which normals contact acts: those of the obstacle, between two bodies the averaged ones of the slave face;
+    /// or x3 as in the paper.
     pub normal: NormalKind,
     /// How areas on an obstacle are measured: on the surface itself, or projected along x3 as in the paper. Default
-    /// "projected" with normal = "x3", else "surface"; between bodies the mortar integrals measure them.
+    /// "projected" with normal = "x3", else "surface".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaKind>,
-    /// How far the sides are pressed into each other before loading: every gap is smaller by it. Negative: a clearance.
-    /// Default 0.
+    /// By how much every gap is smaller before loading; negative: a clearance. Default 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub interference: Option<f64>,
-    /// The gap at the start between two bodies, whatever their meshes say: later changes of the shape count. Negative:
-    /// an interference. Default: the faces tell the gaps. Not with interference.
+    /// The gap at the start between two bodies, whatever their meshes say. Negative: an interference. Default: the gaps
+    /// of the faces. Not with interference.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
     pub clearance: Option<f64>,
-    /// What gaps between two bodies are measured between: "curved" surfaces, or the flat "facets" of the meshes for
-    /// comparison.
+    /// Whether gaps between two bodies are those of curved surfaces, or of flat facets for comparison.
     pub geometry: FaceGeometry,
     /// Other friction coefficients on parts of the slave face.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -16,29 +16,28 @@ const USUAL_DEGREE: usize = 3;
 /// Part of its extent by which the box around a region exceeds it, so that rounding leaves no node outside.
 const MARGIN: f64 = 1e-6;
 
-/// The shape of a body that is optimized. Either the heights of a face of a block (`heights`), control points over its
-/// base; or displacements of control points in a lattice around a region: x = x0 + sum of B-splines times displacements
-/// (mm). Nodes outside the box of the lattice stay where they are.
+/// The shape of a body that is optimized: the heights of a face of a block (`heights`), or displacements of control
+/// points in a lattice around a region. Nodes outside the lattice stay where they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSection {
-    /// The face of a block whose heights are the controls, in place of displacements. Default none.
+    /// The face of a block whose heights are the controls, in place of displacements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heights: Option<ShapedFace>,
     /// Control points along the three coordinates of the box; along x1, x2 for heights. Default [6, 6] for heights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 40)), extend("x-unit" = "1"))]
     pub control_points: Option<Vec<usize>>,
-    /// Degrees of the B-splines along the same coordinates, or one for all, less than the control points; control
-    /// points less one give Bernstein polynomials. Default 3, or as many as the control points allow.
+    /// Degrees of the B-splines along the same coordinates, or one for all, less than the control points. Default 3, or
+    /// as many as the control points allow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0, max = 39)), extend("x-unit" = "1"))]
     pub degrees: Option<Vec<usize>>,
-    /// The heights that an optimization starts from, at the places of the control points, which are spread evenly over
-    /// the base; for heights alone. Required there, unless controls are given.
+    /// Heights at the start, taken at the places of the control points. Required for heights, unless controls are
+    /// given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<ObstacleSection>,
-    /// Control heights at the start one by one, row major with x1 first, in place of start. Default none.
+    /// Control heights at the start one by one, row major with x1 first, in place of start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(max = 1e9)), extend("x-unit" = "mm"))]
     pub controls: Option<Vec<f64>>,
@@ -46,8 +45,7 @@ pub struct LatticeSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
     pub thickness: Option<f64>,
-    /// Two opposite corners of a box along the axes. Default the box around the region; not with corner and edges or
-    /// with cylinder.
+    /// Two opposite corners of a box along the axes. Default the box around the region.
     #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "mm"))]
     pub bounds_of_box: Option<[[f64; 3]; 2]>,
@@ -67,8 +65,7 @@ pub struct LatticeSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 3)), extend("x-unit" = "1"))]
     pub directions: Option<Vec<usize>>,
-    /// A face whose nodes move along its outward normal at the start, for small changes; no other node moves. Default
-    /// none.
+    /// A face whose nodes move along its outward normal at the start, for small changes; no other node moves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal: Option<String>,
     /// Faces, sets of nodes and volumes whose nodes move. Default all nodes in the box.
@@ -92,23 +89,20 @@ pub struct LatticeSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub displacement: Option<[f64; 2]>,
-    /// Largest slope of the net of control points: the difference of neighbours over the distance of their places.
-    /// Default none.
+    /// Largest slope of the net: the difference of neighbours over the distance of their places.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "1", "exclusiveMinimum" = 0.0))]
     pub slope: Option<f64>,
-    /// Least and largest volume of the body, where nodes move along one of the axes x1, x2, x3 alone; a limit bounds
-    /// other volumes. Default none.
+    /// Least and largest volume of the body, where nodes move along one axis alone; else use a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 0.0, max = 1e27)), extend("x-unit" = "mm³"))]
     pub volume: Option<[f64; 2]>,
-    /// The factor of the bending of the net of control points, ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² for heights F, a number
-    /// without unit, which is added to the objective for a fairer shape. Default 0.
+    /// The factor with which the bending of the net of control points, ∫(∂₁₁F)² + 2(∂₁₂F)² + (∂₂₂F)² for heights F, is
+    /// added to the objective. Default 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1e60), extend("x-unit" = "unit of the objective"))]
     pub fairness: Option<f64>,
-    /// Whether an optimization begins with short attempts, one of them on a net of 3 control points per coordinate.
-    /// Default true for heights, else false.
+    /// Whether an optimization begins with short attempts, also on coarse nets. Default true for heights, else false.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attempts: Option<bool>,
     /// Bounds of the displacements of nodes by the shape, a row each.

@@ -4,7 +4,7 @@
 //! text → table → checked against the schema (unknown, missing, type, range) → [`SceneFile`] → [`Case`]
 //! ```
 //! The documentation of the fields below, with their units and ranges, is the only source of the JSON schema, of the
-//! checks, of the comments that `--print-scene` writes and of the table in `docs/scenes.md`.
+//! checks, of the comments that `--print-scene` writes and of the table in `docs/fields.md`.
 
 mod allowed;
 mod bodies;
@@ -94,7 +94,7 @@ pub struct SceneFile {
     /// What is minimised.
     #[serde(default)]
     pub objective: ObjectiveSection,
-    /// Load cases: the shape is rated by its states in all of them. Default none: the scene itself is the only one.
+    /// Load cases: the shape is rated by its states in all of them. Default: the scene itself.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub case: Vec<CaseSection>,
     /// Bounds on what the shape leads to.

@@ -7,18 +7,17 @@ use contact::names::find;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Bounds that the shape found has to keep; at least one of them. A limit of the contact state holds in every case, or
-/// in one.
+/// Bounds that the shape found has to keep; at least one of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitSection {
     /// What is limited.
     pub quantity: QuantityName,
-    /// Its largest value, in its unit. Default none.
+    /// Its largest value, in its unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e18, max = 1e18), extend("x-unit" = "of the quantity"))]
     pub at_most: Option<f64>,
     /// Its least value, in its unit; with the same number as at_most, a volume or a mass is kept. For displacements
-    /// along an axis: a bound of the smallest one. Default none.
+    /// along an axis: a bound of the smallest one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e18, max = 1e18), extend("x-unit" = "of the quantity"))]
     pub at_least: Option<f64>,

@@ -9,14 +9,13 @@ use contact::scene::{BodyScene, Master, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A load case: its name, and what differs from the scene. Cases are independent states under one loading each, not a
-/// history; each begins with bodies at rest.
+/// A load case: its name, and what differs from the scene. Cases are independent states, not a history.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CaseSection {
     /// Its name, different from those of the other cases.
     pub name: String,
-    /// The factor of its measure in the objective, and in that only. Default 1.
+    /// Its factor in the objective. Default 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e15), extend("x-unit" = "1", "exclusiveMinimum" = 0.0))]
     pub weight: Option<f64>,

@@ -18,24 +18,23 @@ pub struct MaterialSection {
     /// Cells: `mean-dilatation` against locking of nearly incompressible materials.
     #[serde(default)]
     pub formulation: Formulation,
-    /// Density, for masses. Default none.
+    /// Density, for masses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e15), extend("x-unit" = "kg/m³", "exclusiveMinimum" = 0.0))]
     pub density: Option<f64>,
 }
 
-/// Displacements prescribed on a face: zero, or given values.
+/// Displacements prescribed on a face.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSection {
-    /// The face: x1-min, x1-max, x2-min, x2-max, bottom or top of a block, or a physical surface of a mesh.
+    /// The face of a block, or a physical surface of a mesh.
     pub face: String,
-    /// Displacement components that are prescribed there, or the one along the normal of the face at the start: zero
-    /// unless a value is given. On a block, u3 only on the face opposite to the contact boundary.
+    /// Displacement components that are prescribed there, along the axes or along the normal of the face at the start:
+    /// zero unless a value is given. On a block, u3 only on the face opposite to the contact face.
     pub held: Vec<Component>,
-    /// Values of u1, u2, u3 where they are held; 0 for components that are not. Default 0. Where two supports share
-    /// nodes, they prescribe the same displacement along directions that both hold. With friction, no support may move
-    /// nodes of the contact face.
+    /// Values of u1, u2, u3 where they are held. Default 0. Where two supports share nodes, they must agree. With
+    /// friction, no support may move nodes of the contact face.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
     pub displacement: Option<[f64; 3]>,
@@ -67,7 +66,7 @@ pub struct LoadSection {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e18, max = 1e18)), extend("x-unit" = "N"))]
     pub force: Option<[f64; 3]>,
-    /// Moment about the point, besides the force or alone. Default none.
+    /// Moment about the point, besides the force or alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -1e21, max = 1e21)), extend("x-unit" = "N mm"))]
     pub moment: Option<[f64; 3]>,

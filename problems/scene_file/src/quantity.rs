@@ -66,8 +66,8 @@ pub struct Details {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
     pub exponent: Option<f64>,
-    /// For `pressure-norm`, what a contact node counts: its area, for the integral of the power over the contact
-    /// boundary, or 1 each, for the paper's sum. Default "area".
+    /// For `pressure-norm`, what a contact node counts: its area, for the integral over the contact boundary, or 1, for
+    /// the paper's sum. Default "area".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weight: Option<NodeWeight>,
     /// For `open-area` and `loaded-area`, and required there: the pressure from which a contact node counts with its
@@ -78,12 +78,12 @@ pub struct Details {
     /// For `pressure-deviation`, and required there: the wanted pressure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wanted: Option<WantedSection>,
-    /// For `stress` and `stress-norm`: the cells whose centres lie in this box at the start, faces included, and which
-    /// belong to the volume. For `displacement`: the nodes of these cells, or of the face. For `reaction`, and required
-    /// there: the face of the supports. Default all.
+    /// For `stress` and `stress-norm`: the cells in this volume whose centres lie in this box at the start. For
+    /// `displacement`: the nodes of these cells, or of the face. For `reaction`, and required there: the face of the
+    /// supports. Default all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<RegionSection>,
-    /// For `displacement`: a face whose mean displacement is subtracted. Default none.
+    /// For `displacement`: a face whose mean displacement is subtracted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_to: Option<BaseSection>,
     /// For `displacement`, `contact-force`, `contact-moment` and `reaction`: the axis along which they are measured,
@@ -144,14 +144,12 @@ pub enum WantedSection {
     /// A formula.
     Formula {
         /// The pressure in MPa over x1, x2, x3 in mm at the start, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * /
-        /// ^, parentheses, functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is
-        /// -(x1^2); powers count from the right: 2^3^2 is 2^9.
+        /// ^, parentheses, functions and PI, as docs/scenes.md lists them.
         pressure: String,
     },
     /// Pressures on a uniform grid over the base of blocks, bilinear in between.
     Grid {
-        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; MPa. Lines that
-        /// begin with # are comments.
+        /// CSV file beside the scene file, as for heights; MPa.
         file: String,
     },
 }

@@ -15,8 +15,7 @@ pub struct SolverSection {
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Clusters into which the subdomains of all bodies are joined, with six unknowns each in the coarse problem of
-    /// total FETI; at least as many as processes. Default none: every subdomain by itself.
+    /// Clusters into which the subdomains of all bodies are joined for many processes; at least as many as processes.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub clusters: Option<usize>,
@@ -26,15 +25,15 @@ pub struct SolverSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OptimizerSection {
-    /// With the composite model of pressure measure and pressures, or by cuts alone. Default composite for measures of
-    /// the pressures, bundle for the others, which have no composite model.
+    /// With the Jacobian of what objective and limits depend on, or with one subgradient per shape. Default composite
+    /// for objectives of pressures or of the shape alone, and for smooth ones with load cases or limits; else bundle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<MethodName>,
     /// Largest number of evaluations of objective and subgradient, on every mesh.
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub max_evaluations: usize,
     /// Predicted decrease, relative to the objective, at which the run ends. Default 1e-7, or 1e-5 beside a limit of
-    /// the volume: along its curved constraint the last digits take many steps.
+    /// the volume.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
     pub tolerance: Option<f64>,
@@ -42,8 +41,8 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "s", "exclusiveMinimum" = 0.0))]
     pub time_limit: Option<f64>,
-    /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at
-    /// the start, at least a thousandth and at most half of the smallest extent of the body.
+    /// Length of the first step; a fifth of it on later meshes of a continuation. Default half of the mean gap at the
+    /// start, between a thousandth and half of the smallest extent of the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
     pub first_step: Option<f64>,
@@ -51,23 +50,19 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 3, max = 10_000), extend("x-unit" = "1"))]
     pub bundle_size: Option<usize>,
-    /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands. The latter is
-    /// relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which
-    /// can reach or cross 0.
+    /// Accuracy asked of the contact solver: the tightest, or as the predicted decrease demands, which is refused with
+    /// objectives that can reach 0.
     pub accuracy: AccuracyName,
-    /// Growing meshes of a coarse-to-fine optimization: of blocks, bricks along the axis that has most, the others in
-    /// proportion; of a scene in which one body is a mesh, Gmsh files beside the scene file, each in place of its
-    /// mesh, with lattices of the same extents. Empty for one run on the mesh of the scene.
+    /// Growing meshes of a coarse-to-fine optimization: bricks along the axis of blocks that has most, or Gmsh files in
+    /// place of the only mesh. Empty for one run on the mesh of the scene.
     #[schemars(extend("x-unit" = "1"))]
     pub continuation: Vec<ContinuationMesh>,
-    /// So many starts on one mesh, always the same ones: that of the scene; heights that follow what lies opposite to
-    /// them, where all controls are heights; then smooth random changes.
+    /// Number of starts: that of the scene, one that follows what lies opposite where all controls are heights, then
+    /// smooth random changes, always the same.
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
     pub starts: usize,
-    /// Every start is optimized once, with all controls. Default false: where a lattice asks for attempts, has more
-    /// than 3 control points along an axis, and the objective is one of the pressures, attempts with all controls and
-    /// from 3 control points per axis to all, then, from the best of them, a run to the end, which begins at the shape
-    /// of least bending that is as good. Other scenes, and growing meshes, are optimized once anyway.
+    /// Every start is optimized once, with all controls, in place of the attempts that a lattice asks for
+    /// (docs/commands.md). Default false.
     pub single: bool,
 }
 
@@ -114,13 +109,12 @@ pub enum AccuracyName {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputSection {
-    /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default
-    /// none: nothing is written.
+    /// Folder for the files of a run, relative to where the program is started. Default none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
     /// Whether pictures are drawn into the folder, as SVG.
     pub pictures: bool,
-    /// Whether displacements, stresses and the contact boundary are written for ParaView.
+    /// Whether fields are written for ParaView.
     pub vtk: bool,
     /// Whether a report is written as a self-contained HTML page.
     pub report: bool,

@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// A rigid obstacle, the heights of a face of a block, or those that a shape starts from.
+/// A rigid obstacle, the heights of a face of a block, or those that a shape starts from. The forms from "tilted-plane"
+/// on lie anywhere in space, and are obstacles only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ObstacleSection {
@@ -49,16 +50,16 @@ pub enum ObstacleSection {
         /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that
         /// begin with # are comments.
         file: String,
-        /// The corner of the grid of least x1 and x2. Default that of the base of the block.
+        /// Its corner of least x1 and x2. Default that of the block.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
         origin: Option<[f64; 2]>,
-        /// Lengths of the grid along x1, x2; required for a mesh. Default those of the base of the block.
+        /// Its lengths along x1, x2; required for a mesh. Default those of the block.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
         size: Option<[f64; 2]>,
     },
-    /// A plane anywhere in space; an obstacle only.
+    /// A plane.
     TiltedPlane {
         /// One of its points.
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
@@ -67,7 +68,7 @@ pub enum ObstacleSection {
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
         normal: [f64; 3],
     },
-    /// A sphere anywhere in space; an obstacle only.
+    /// A sphere.
     Ball {
         /// Centre.
         #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
@@ -79,7 +80,7 @@ pub enum ObstacleSection {
         #[serde(default)]
         side: Side,
     },
-    /// A circular cylinder anywhere in space, without ends; an obstacle only.
+    /// A circular cylinder without ends.
     Cylinder {
         /// A point of its axis.
         #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
@@ -94,7 +95,7 @@ pub enum ObstacleSection {
         #[serde(default)]
         side: Side,
     },
-    /// A cone anywhere in space, as far as its apex; an obstacle only.
+    /// A cone, as far as its apex.
     Cone {
         /// A point of its axis.
         #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
@@ -112,7 +113,7 @@ pub enum ObstacleSection {
         #[serde(default)]
         side: Side,
     },
-    /// A torus anywhere in space: a circle that turns about an axis; an obstacle only.
+    /// A torus: a circle that turns about an axis.
     Torus {
         /// Its centre.
         #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
@@ -120,7 +121,7 @@ pub enum ObstacleSection {
         /// Direction of its axis, of any length.
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
         axis: [f64; 3],
-        /// From the axis to the centre of the circle; negative for a barrel, whose circle has it beyond the axis.
+        /// From the axis to the centre of the circle; negative for a barrel.
         #[schemars(range(min = -1e12, max = 1e12), extend("x-unit" = "mm"))]
         major_radius: f64,
         /// Radius of the circle.
@@ -130,10 +131,10 @@ pub enum ObstacleSection {
         #[serde(default)]
         side: Side,
     },
-    /// A surface of revolution anywhere in space; an obstacle only.
+    /// A surface of revolution.
     Revolution {
-        /// CSV file beside the scene file: radius and height of one point of the profile per line, in the order of the
-        /// curve; mm. Lines that begin with # are comments.
+        /// CSV file beside the scene file: radius and height of a point of the profile per line, in the order of the
+        /// curve; mm.
         file: String,
         /// The point of the axis where the height is zero.
         #[schemars(inner(range(min = -1e12, max = 1e12)), extend("x-unit" = "mm"))]
@@ -141,22 +142,22 @@ pub enum ObstacleSection {
         /// Direction of its axis, along which heights grow, of any length.
         #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "1"))]
         axis: [f64; 3],
-        /// Where the body is: outside is away from the axis or, for a closed profile, outside of it.
+        /// Where the body is: outside is away from the axis, or outside of a closed profile.
         #[serde(default)]
         side: Side,
     },
-    /// A face of a mesh anywhere in space; an obstacle only.
+    /// A face of a mesh.
     Mesh {
         /// Gmsh or STL file beside the scene file.
         file: String,
-        /// The name of the face in a Gmsh file; an STL file is one face.
+        /// The face in a Gmsh file; an STL file is one face.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         face: Option<String>,
         /// The unit of lengths in the file.
         #[serde(default)]
         unit: UnitName,
-        /// Where the body is: outside where the normals of the facets point to it, which are those of the cells or, in
-        /// a file without cells, those that the order of the corners tells.
+        /// Where the body is: outside where the normals of the facets point, outwards from cells or, without cells, by
+        /// the order of the corners.
         #[serde(default)]
         side: Side,
     },

@@ -1,19 +1,26 @@
-//! The fields of scene files, type by type: for `docs/scenes.md` and the command `fields`.
+//! The fields of scene files, type by type: for `docs/fields.md` and the command `fields`.
 
 use crate::allowed;
+use crate::quantity::Details;
 use crate::schema::{Node, schema};
 use contact::error::SceneError;
 use contact::names::find;
 use serde_json::Value;
+use std::sync::OnceLock;
 
 /// The name of the type of the whole file.
 const FILE: &str = "scene";
+/// Names beyond which a list of names is printed at its first field only.
+const MANY_NAMES: usize = 8;
+
+/// Words of a description that says no more than the name of its type.
+const REPEATING_WORDS: usize = 7;
 
 /// A type of tables: its name, and its place in the schema.
 type Kind = (String, Node<'static>);
 
-/// The fields of one type of tables as Markdown, or of all types in the order in which they are named: field, default,
-/// what is allowed with its unit, meaning.
+/// The fields of one type of tables as Markdown, or of all types in the order in which they are named: what is allowed
+/// with its unit, meaning, default.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] with the names for a type that scene files do not have.
@@ -23,10 +30,10 @@ pub fn field_tables(kind: Option<&str>) -> Result<String, SceneError> {
         None => &kinds[..],
         Some(kind) => &[kinds[find("fields", kind, kinds.iter().map(|(name, _)| name.as_str()))?].clone()],
     };
-    Ok(wanted.iter().map(|(name, node)| text(name, node)).collect::<Vec<_>>().join("\n"))
+    Ok(wanted.iter().map(|(name, node)| text(name, node, &kinds)).collect::<Vec<_>>().join("\n"))
 }
 
-/// All types, each behind the first one that names it.
+/// All types, each behind the first one that names it; before the one that it belongs to where it has no name there.
 fn kinds() -> Vec<Kind> {
     let mut found = vec![(FILE.to_owned(), Node::root())];
     let mut next = 0;
@@ -38,7 +45,24 @@ fn kinds() -> Vec<Kind> {
         }
         next += 1;
     }
+    let first = found.iter().position(|(_, node)| holds(node, &details())).unwrap_or(found.len());
+    found.insert(first, ("quantity".to_owned(), details()));
     found
+}
+
+/// What objective, limits and reports have in common.
+fn details() -> Node<'static> {
+    static DETAILS: OnceLock<Value> = OnceLock::new();
+    Node::new(DETAILS.get_or_init(|| schemars::schema_for!(Details).to_value()))
+}
+
+/// Whether a table has all fields of another one, with the same meaning.
+fn holds(node: &Node<'static>, part: &Node<'static>) -> bool {
+    let meaning = |node: &Node<'static>, name: &str| node.field(name).map(|field| field.text("description"));
+    let names = part.own_names();
+    !names.is_empty()
+        && names.len() < node.own_names().len()
+        && names.iter().all(|name| meaning(node, name) == meaning(part, name))
 }
 
 /// The tables at a place: itself, or its forms.
@@ -73,43 +97,57 @@ fn words(name: &str) -> String {
     text
 }
 
-fn text(name: &str, node: &Node<'static>) -> String {
-    let mut text = format!("### `{name}`\n\n{}\n\n", node.text("description").unwrap_or_default());
-    text += "| field | default | allowed | meaning |\n|---|---|---|---|\n";
-    let forms = node.forms();
-    if forms.is_empty() {
-        rows(&mut text, node);
+fn text(name: &str, node: &Node<'static>, kinds: &[Kind]) -> String {
+    let mut text = format!("### `{name}`\n\n");
+    // A short description only repeats the name.
+    let description = node.text("description").filter(|text| text.split_whitespace().count() > REPEATING_WORDS);
+    description.iter().for_each(|description| text += &format!("{description}\n\n"));
+    let part = kinds.iter().find(|(_, part)| part.forms().is_empty() && holds(node, part));
+    if let Some((part, _)) = part {
+        text += &format!("It has the fields of `{part}`, and:\n\n");
     }
-    for (form, node) in forms {
-        row(&mut text, "form", "", &format!("\"{form}\""), &node.text("description").unwrap_or_default());
-        rows(&mut text, &node);
+    let own = |field: &str| part.is_none_or(|(_, part)| part.field(field).is_none());
+    if node.forms().is_empty() {
+        fields(&mut text, (name, node), own, kinds);
     }
-    text
+    for (form, node) in node.forms() {
+        text += &format!("`form = \"{form}\"`: {}\n\n", node.text("description").unwrap_or_default());
+        fields(&mut text, (name, &node), own, kinds);
+        text.push('\n');
+    }
+    text.trim_end().to_owned() + "\n"
 }
 
-fn rows(text: &mut String, node: &Node<'static>) {
-    for (name, schema) in node.fields().into_iter().flatten() {
+fn fields(text: &mut String, (kind_name, node): (&str, &Node<'static>), own: impl Fn(&str) -> bool, kinds: &[Kind]) {
+    for (name, schema) in node.fields().into_iter().flatten().filter(|(name, _)| own(name)) {
         let field = Node::new(schema);
         if field.inner.get("const").is_some() {
             continue;
         }
-        let default = field.outer.get("default").unwrap_or(&Value::Null);
-        let default = match (kind(schema), default) {
-            _ if node.requires(name) => "required".to_owned(),
-            (Some(_), _) => "–".to_owned(),
-            (None, Value::Null) => "see meaning".to_owned(),
-            (None, value) => value.to_string(),
+        let meaning = field.text("description").unwrap_or_default();
+        let default = field.outer.get("default").filter(|value| !value.is_null() && !meaning.contains("Default"));
+        let needed = match (node.requires(name), default.filter(|_| kind(schema).is_none())) {
+            (true, _) => ", required".to_owned(),
+            (false, Some(value)) => format!(", default {value}"),
+            (false, None) => String::new(),
         };
-        let allowed = match kind(schema) {
-            None => allowed::words(&field),
-            Some((kind, _)) if field.items().is_some() => format!("list of `{kind}`"),
-            Some((kind, _)) => format!("`{kind}`"),
-        };
-        row(text, name, &default, &allowed, &field.text("description").unwrap_or_default());
+        *text += &format!("* `{name}` ({}{needed}): {meaning}\n", allowed_here(&field, schema, kind_name, kinds));
     }
 }
 
-fn row(text: &mut String, name: &str, default: &str, allowed: &str, meaning: &str) {
-    let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
-    *text += &format!("| `{name}` | {} | {} | {} |\n", line(default), line(allowed), line(meaning));
+/// What is allowed in a field: the type of an inner table, or values.
+fn allowed_here(field: &Node<'static>, schema: &'static Value, kind_name: &str, kinds: &[Kind]) -> String {
+    let names = field.names();
+    let same = |(_, node): &&Kind| {
+        node.fields()
+            .into_iter()
+            .flatten()
+            .any(|(_, other)| names.len() > MANY_NAMES && Node::new(other).names() == names)
+    };
+    match (kind(schema), kinds.iter().find(same)) {
+        (Some((kind, _)), _) if field.items().is_some() => format!("list of `{kind}`"),
+        (Some((kind, _)), _) => format!("`{kind}`"),
+        (None, Some((first, _))) if first != kind_name => format!("as in `{first}`"),
+        (None, _) => allowed::brief(field),
+    }
 }

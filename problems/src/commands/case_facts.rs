@@ -15,7 +15,7 @@ use serde_json::{Map, json};
 
 /// What the words of the table say of cases.
 const INDEPENDENT: &str = "Cases are independent states under one loading each, not a history: each begins with bodies at rest. The \
-                           multiplier of a case is its share in the proof: without the cases whose multiplier is 0, the shape would be \
+                           multiplier of a case is its share in the optimum: without the cases whose multiplier is 0, the shape would be \
                            optimal too.";
 
 /// Says on stderr, before any solve, how the bodies of every case lie and what holds them.
@@ -163,7 +163,7 @@ fn object(
     ]))
 }
 
-/// What every case contributes to the proof of an optimization over the worst case: the multipliers of its cuts.
+/// What every case contributes to the certificate of an optimization over the worst case: the multipliers of its cuts.
 fn multipliers(objective: &ContactObjective, proof: &CompositeProof) -> Option<Vec<f64>> {
     let (cost, count) = (objective.cost(), objective.cases().count());
     if cost.over() != Over::Worst || count == 1 {

@@ -251,7 +251,7 @@ impl Group {
 /// The facts of a result.
 #[derive(Debug, Default)]
 pub struct Facts {
-    /// The first lines of a text: what was found, and whether it is proved.
+    /// The first lines of a text: what was found, and whether it is confirmed.
     pub lead: Vec<String>,
     pub groups: Vec<Group>,
 }

@@ -35,7 +35,7 @@ struct RecheckJson {
     /// Whether the point of the certificate is that of controls.json.
     point_equals_controls: bool,
     /// Differences of the cuts from those that outputs, Jacobian and pressure measure give, where the composite model
-    /// proved the point stationary.
+    /// confirmed the point.
     composite: Option<ProofCheck>,
     /// The limits, where the scene has some.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -1,4 +1,4 @@
-//! The numbers that README.md and `docs/results.md` begin with, computed anew and printed as their tables.
+//! The numbers that `docs/measurements.md` begins with, computed anew and printed as their tables.
 //!
 //! Every number comes from a command of the contact binaries, so that anybody gets it by that command as well.
 
@@ -10,7 +10,7 @@ use scene_file::SceneFile;
 use serde_json::Value;
 use std::process::ExitCode;
 
-/// The tables of README.md and docs/results.md.
+/// The tables that docs/measurements.md begins with.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "headline", version)]
 struct Options {
@@ -52,7 +52,7 @@ fn evaluations_to(report: &Value, level: f64) -> Option<usize> {
     report["course"].as_array()?.iter().position(reached).map(|index| index + 1)
 }
 
-/// A line of the table of README.md for an optimization; `paper` is what stands beside the reduction.
+/// A line of the table of docs/measurements.md for an optimization; `paper` is what stands beside the reduction.
 fn line(report: &Value, name: &str, paper: &str, evaluations: &str) -> String {
     let (start, value) = (number(&report["objective_start"]), number(&report["objective"]));
     let values = format!("{} → {}", short(start, 3), short(value, if value < 2e16 { 4 } else { 3 }));
@@ -65,10 +65,10 @@ fn short(value: f64, digits: usize) -> String {
     format!("{value:.digits$e}")
 }
 
-/// Values of Θ whose price in evaluations README.md states for Examples 5.1 and 5.2, as printed there.
+/// Values of Θ whose price in evaluations docs/measurements.md states for Examples 5.1 and 5.2, as printed there.
 pub const LEVELS: [&str; 2] = ["1.4835e16", "1.8272e16"];
 
-/// The line of an optimization in README.md: Example 5.1 (0) or 5.2 (1) on 12³ bricks per body.
+/// The line of an optimization in docs/measurements.md: Example 5.1 (0) or 5.2 (1) on 12³ bricks per body.
 pub fn optimization_line(example: usize) -> Result<String, Failure> {
     let (scene, name, paper) = match example {
         0 => (SceneName::Signorini, "Signorini (Example 5.1)", "35.9 at 35³ bricks"),
@@ -83,8 +83,7 @@ pub fn optimization_line(example: usize) -> Result<String, Failure> {
     Ok(line(&report, name, paper, &format!("{reached}, {} in all, {end}", report["evaluations"])))
 }
 
-/// A line of the table of states in README.md: Example 5.1 at its flat start by total FETI. Peak memory is that of the
-/// process.
+/// A line of the table of states: Example 5.1 at its flat start by total FETI. Peak memory is that of the process.
 pub fn state_line(case: Case) -> Result<String, Failure> {
     let Case { mesh, subdomains } = case;
     let (bricks, pieces) = (mesh.to_string(), subdomains.to_string());
@@ -104,7 +103,7 @@ pub fn state_line(case: Case) -> Result<String, Failure> {
     ))
 }
 
-/// The table of Example 5.3 in docs/results.md, and how many times the objective the shape found without friction has.
+/// The table of Example 5.3, and how many times the objective the shape found without friction has.
 pub fn friction_table() -> Result<(String, f64), Failure> {
     let report = run(SceneName::Signorini, &["compare"])?;
     let rows = report["shapes"].as_array().into_iter().flatten().map(|shape| {
@@ -119,7 +118,7 @@ pub fn friction_table() -> Result<(String, f64), Failure> {
     Ok((text, number(&report["loss_without_friction_in_the_model"])))
 }
 
-/// The table of Example 5.1 at the paper's size in docs/results.md.
+/// The table of Example 5.1 at the paper's size.
 fn paper_size_table() -> Result<String, Failure> {
     let size = ["optimize", "--mesh", "35", "--subdomains", "5"];
     let mut rows = Vec::new();

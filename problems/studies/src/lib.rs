@@ -1,5 +1,5 @@
-//! The studies behind `docs/scaling.md`, `docs/accuracy.md` and `docs/stability.md`, each with a binary of its name,
-//! and `headline`, which computes the tables of README.md and `docs/results.md`.
+//! The studies behind `docs/measurements.md` (scaling, accuracy) and `docs/stability.md`, each with a binary of its
+//! name, and `headline`, which computes the tables that `docs/measurements.md` begins with.
 
 pub mod accuracy;
 pub mod headline;

@@ -100,7 +100,7 @@ fn a_short_optimization_descends_and_stays_admissible() {
 }
 
 #[test]
-fn an_optimization_ends_by_itself_with_a_proof() {
+fn an_optimization_ends_by_itself_confirmed() {
     let result = run("hertz3d", &["--mesh", "6", "--json"]);
     assert_eq!(result["termination"]["confirmed"], true, "{result}");
     assert!(result["states"].as_u64() <= Some(25), "{result}");

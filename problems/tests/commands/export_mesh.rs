@@ -16,6 +16,21 @@ fn nodes_of_the_contact_face_move_where_supports_hold_others() {
     raised("true");
 }
 
+/// The folder of a run has the mesh under another name: the scene that was run exports its shape all the same.
+#[test]
+fn the_scene_of_a_run_exports_its_shape() {
+    let scene = format!("{}/scenes/lug_tet10.toml", env!("CARGO_MANIFEST_DIR"));
+    let folder = kit::scratch();
+    let (run, shape) = (folder.path().join("run"), folder.path().join("shape"));
+    kit::json(CONTACT, &[&scene, "--max-evaluations", "1", "--no-checks", "--out", text(&run), "--json"]);
+    let printed =
+        kit::json(CONTACT, &[&scene, "export", "--run", text(&run), "--msh", "--out", text(&shape), "--json"]);
+    assert_eq!(printed["files"][1]["file"], "body.msh", "{printed}");
+    let other = format!("{}/scenes/lug_hex8.toml", env!("CARGO_MANIFEST_DIR"));
+    let refused = kit::run(CONTACT, &[&other, "export", "--run", text(&run), "--out", text(&folder.path().join("o"))]);
+    assert!(kit::errors(&refused).contains("the meshes differ"), "{}", kit::errors(&refused));
+}
+
 /// The lug moved up by 0.1 mm as a whole: its files agree with each other, with the nose, a cylinder, and with the top.
 /// `hold`: whether supports, which hold the wall along x1 and x2, hold nodes in the shape too.
 fn raised(hold: &str) {

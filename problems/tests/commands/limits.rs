@@ -58,7 +58,7 @@ fn a_shape_says_by_how_much_it_exceeds_its_limit() {
 
 /// Peak limits that are active at the optimum, and one that only the start exceeds.
 #[test]
-fn shapes_within_peak_limits_are_proved() {
+fn shapes_within_peak_limits_are_confirmed() {
     for (limit, active) in [(3455.3, true), (3702.2, false)] {
         let result = limited(limit, &["optimize", "--single"]);
         let found = &result["limits"][0];
@@ -101,7 +101,7 @@ at_most = 60.0
 "#;
 
 #[test]
-fn the_least_volume_within_a_peak_limit_is_proved_from_far_outside() {
+fn the_least_volume_within_a_peak_limit_is_confirmed_from_far_outside() {
     let folder = scratch();
     let file = folder.path().join("ball.toml");
     std::fs::write(&file, BLOCK_ON_BALL).unwrap();

@@ -58,7 +58,7 @@ mod ways;
 #[path = "../../examples/own_objective.rs"]
 mod own_objective;
 
-/// docs/tutorial_objective.md states these numbers.
+/// docs/plug_in_your_problem.md states these numbers.
 #[test]
 fn an_objective_of_ones_own_falls_as_the_tutorial_says() {
     let report = own_objective::minimize().unwrap();

@@ -22,7 +22,7 @@ fn near(found: &Value, expected: f64, tolerance: f64) {
     assert!((number(found) / expected - 1.0).abs() < tolerance, "{found} {expected}");
 }
 
-/// The wanted pressure of `seal.toml` is approached by the composite method, and the end is proved stationary.
+/// The wanted pressure of `seal.toml` is approached by the composite method, and the end is confirmed.
 #[test]
 fn a_seal_comes_near_its_wanted_pressure() {
     let report = json(contact3d(), &[&scene("seal.toml"), "--single", "--json"]);

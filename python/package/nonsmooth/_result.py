@@ -28,7 +28,7 @@ STATUS = {
 #: What to do next; for another reason, the engine advises.
 _ADVICE = {
     "stationary": "result.recheck() computes the certificate again",
-    "stationary_unconfirmed": "if the problem is convex, options={'convex': True} lets the run prove that this is the minimum; otherwise "
+    "stationary_unconfirmed": "if the problem is convex, options={'convex': True} lets the run confirm that this is the minimum; otherwise "
     "start again from here, or from elsewhere, and compare",
     "noise_limit": "a more accurate fun is needed to get further",
     "step_too_short": "check the subgradients: nonsmooth.taylor_test(fun, x) compares them with values next to a point x",

@@ -204,7 +204,7 @@ class Scene:
     ----------
     **fields
         The fields of a scene file, tables as dicts: ``Scene(name="punch", friction=0.3, body=[{...}], contact=[{...}],
-        ...)``. The page docs/scenes.md of the repository lists them; a bad one is named with what is
+        ...)``. The page docs/fields.md of the repository lists them; a bad one is named with what is
         allowed. Mandatory are those that have no default there.
 
     Examples

@@ -1,4 +1,4 @@
-//! Steps away from a point that is proved stationary, whose proof stands if they find nothing lower.
+//! Steps away from a confirmed point, whose proof of stationarity stands if they find nothing lower.
 //!
 //! ```text
 //! s_i + S_i d ≤ −s_i/2 for the inactive constraints next to the point      one composite step with these rows, then go on

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! predicted = h(c) − h(c + G d),   ratio = (Θ(x) − Θ(x + d))/predicted:   u falls if it is at least 0.5, rises after a rejected step
-//! predicted small at small u:      stationary, proved by w ∈ ∂h and G at x alone                       radius 0
+//! predicted small at small u:      confirmed: stationary by w ∈ ∂h and G at x alone                       radius 0
 //! ```
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. A
 //! rejected step is corrected from the model at its end. Where the correction fails too, the subproblem takes the

@@ -25,7 +25,7 @@ use crate::report::{Origin, Termination};
 const MAX_WEIGHTS: usize = 20;
 /// Factor of the promised decrease below which a tenth of the weight has brought nothing beside curvature.
 const SAME_DECREASE: f64 = 1.01;
-/// Evaluations that a run spends on the bound of a convex problem once its end is proved.
+/// Evaluations that a run spends on the bound of a convex problem once its end is confirmed.
 const MAX_FOR_BOUND: usize = 4;
 /// Each of them promises this many times what rounding hides.
 const WORTHWHILE: f64 = 10.0;
@@ -46,7 +46,7 @@ pub(crate) struct Composite {
     /// Bounds of a convex problem that were larger than what may be left, each of which took one more step.
     bounds: Vec<f64>,
     /// The proof that stands while such a step is evaluated.
-    proved: Option<(Ending, Base)>,
+    confirmed: Option<(Ending, Base)>,
 }
 
 impl Composite {
@@ -60,7 +60,7 @@ impl Composite {
             correcting: false,
             escape: None,
             bounds: vec![],
-            proved: None,
+            confirmed: None,
         }
     }
 
@@ -156,7 +156,7 @@ impl Composite {
                 let proof = Some(Proof { proposal: proposal.clone(), composite });
                 let ending = Ending { termination, proof };
                 if tightens {
-                    self.proved = Some((ending, base.clone()));
+                    self.confirmed = Some((ending, base.clone()));
                     return Ok(Answer::trial(proposal));
                 }
                 return Ok(self.leave(at, ending, base));
@@ -263,7 +263,7 @@ impl Composite {
             self.escape = escape;
             return Ok(answer);
         }
-        if let Some((ending, base)) = self.proved.take() {
+        if let Some((ending, base)) = self.confirmed.take() {
             return Ok(self.leave(at, ending, &base));
         }
         let Some(base) = self.base.clone().filter(|_| self.trust.pass()) else { return Ok(Answer::Silent) };
@@ -337,7 +337,7 @@ impl Proposer for Composite {
             let curved = are_curved(outer, at.state.constraints.as_deref());
             self.steps.remember(outer, &trial.proposal.trial, known, trial.constraints, curved);
         }
-        if self.escape.is_some() || self.proved.is_some() && !trial.serious {
+        if self.escape.is_some() || self.confirmed.is_some() && !trial.serious {
             return;
         }
         if !trial.proposal.restores {
@@ -372,7 +372,7 @@ impl Proposer for Composite {
             }
         }
         if trial.serious {
-            self.proved = None;
+            self.confirmed = None;
             self.rebase(at, trial.linearization);
         }
     }
@@ -388,7 +388,7 @@ impl Proposer for Composite {
 
     fn recenter(&mut self, at: &mut Position<'_>, linearization: Option<&Linearization>) {
         // The center evaluated anew has outdated the proof.
-        (self.escape, self.proved) = (None, None);
+        (self.escape, self.confirmed) = (None, None);
         if let (Some(outer), Some(known)) = (at.outer, linearization) {
             let constraints = at.state.constraints.as_deref();
             let curved = are_curved(outer, constraints);
@@ -400,7 +400,7 @@ impl Proposer for Composite {
 
     fn standing_proof(&mut self) -> Option<Ending> {
         let escape = self.escape.take().map(|escape| escape.ending);
-        escape.or_else(|| self.proved.take().map(|(ending, _)| ending))
+        escape.or_else(|| self.confirmed.take().map(|(ending, _)| ending))
     }
 }
 

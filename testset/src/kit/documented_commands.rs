@@ -57,11 +57,9 @@ pub fn run_commands(root: &Path, package: &str, binary: fn(&str) -> Option<&'sta
     for page in pages::all(root) {
         let folder = playground(root);
         for command in &page.commands {
-            if !command.line().starts_with("cargo run ") || command.cargo_option("-p") != Some(package) {
-                continue;
-            }
-            let program = command.cargo_option("--bin").and_then(binary);
-            let program = program.unwrap_or_else(|| panic!("{}: {}: no such binary", command.place, command.line()));
+            let Some(name) = command.binary(package) else { continue };
+            let program =
+                binary(name).unwrap_or_else(|| panic!("{}: {}: no such binary", command.place, command.line()));
             run(command, program, folder.path());
             *(if command.slow { &mut parsed } else { &mut ran }) += 1;
         }

@@ -1,9 +1,10 @@
 //! What the tests of all packages share: reproducible numbers, scratch folders, programs run to their end, the commands
-//! of the pages, and ranks that are threads.
+//! of the pages and the numbers that these share, and ranks that are threads.
 //!
 //! Nothing here knows the packages under test, so that every one of them can use it.
 
 mod documented_commands;
+pub mod facts;
 mod mailbox;
 mod numbers;
 pub mod pages;

@@ -1,10 +1,15 @@
 //! The commands of the pages: README.md, problems/README.md and docs/*.md.
 //!
+//! Pages name the binaries of the package `problems` as they are installed: `contact3d SCENE`.
+//!
 //! A fenced block with the info `sh` holds commands that the tests run, one with `sh slow` commands that take too long
 //! for that: the tests have their options parsed. `#` begins a comment. Blocks of another kind hold no command that
 //! begins with `cargo` or `git`, except those marked `text`: output, or usage.
 
 use std::path::{Path, PathBuf};
+
+/// The binaries that `cargo install --path problems` installs.
+pub const INSTALLED: [&str; 4] = ["contact3d", "hertz3d", "signorini3d", "toy2d"];
 
 /// One page of the repository.
 #[derive(Debug)]
@@ -38,8 +43,21 @@ impl Command {
         options.get(at + 1).map(String::as_str)
     }
 
-    /// What cargo hands to the program.
+    /// The binary of a package that the command starts: one that is installed, or one that cargo runs.
+    pub fn binary(&self, package: &str) -> Option<&str> {
+        let first = self.words[0].as_str();
+        if package == "problems" && INSTALLED.contains(&first) {
+            return Some(first);
+        }
+        let runs = self.line().starts_with("cargo run ") && self.cargo_option("-p") == Some(package);
+        runs.then(|| self.cargo_option("--bin").unwrap_or_else(|| panic!("{}: no --bin", self.place)))
+    }
+
+    /// What the program gets, from cargo or directly.
     pub fn arguments(&self) -> &[String] {
+        if INSTALLED.contains(&self.words[0].as_str()) {
+            return &self.words[1..];
+        }
         let separator = self.words.iter().position(|word| word == "--");
         separator.map_or(&[], |at| &self.words[at + 1..])
     }

@@ -55,7 +55,7 @@ fn head(part: &Part<'_>) -> String {
          #   contact3d {stem}.toml evaluate --out results/{stem}    solves it,\n\
          #   contact3d {stem}.toml --out results/{stem}_optimum     optimizes the shape.\n\
          # Lines such as \"# load: …\" ask what only you can know: look lists them until you delete them.\n\
-         # Units: N, mm, MPa. docs/scenes.md explains every field.\n\
+         # Units: N, mm, MPa. docs/scenes.md explains scenes, docs/fields.md lists the fields.\n\
          # Faces: {faces}.\n\
          name = {}\n\
          # Coulomb friction coefficient: dry steel on steel has about 0.15 to 0.3.\n\

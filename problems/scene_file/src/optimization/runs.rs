@@ -108,5 +108,5 @@ pub(super) fn best<'r>(runs: impl Iterator<Item = &'r ContactRun>) -> Option<&'r
 
 fn is_as_good(fair: &ContactRun, other: &ContactRun) -> bool {
     let (gain, same) = (other.report.value - fair.report.value, AS_GOOD * other.report.value.abs());
-    violation(fair) <= violation(other) && (gain > same || gain >= -same && fair.report.is_proved())
+    violation(fair) <= violation(other) && (gain > same || gain >= -same && fair.report.is_confirmed())
 }

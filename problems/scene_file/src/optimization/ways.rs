@@ -11,7 +11,7 @@ use nonsmooth::verify::seeded_direction;
 
 /// First step of a run that goes on from a shape already optimized, in first steps of the first run. The gap there says
 /// nothing about the changes that are left, since the bodies have followed the surface; steps from a fourteenth to a
-/// third of the first were measured to do about equally well (docs/long_runs.md).
+/// third of the first were measured to do about equally well.
 const LATER_FIRST_STEP: f64 = 0.2;
 
 /// Largest change of a control at a further start, in first steps: several times the length on which contact changes.

@@ -71,7 +71,7 @@ impl Comparison<'_> {
         SurfaceDifference { mean, shape, variation: of_surfaces(&heights).1 }
     }
 
-    /// All facts: what friction is worth, whether that is proved, and the start and both optima in both models; with
+    /// All facts: what friction is worth, whether that is confirmed, and the start and both optima in both models; with
     /// what several processes have used.
     ///
     /// # Errors
@@ -129,9 +129,9 @@ impl Comparison<'_> {
             number(difference.variation)
         ));
         for (run, name) in self.runs.into_iter().zip(["with", "without"]) {
-            if !run.report.is_proved() {
+            if !run.report.is_confirmed() {
                 sentences.push(format!(
-                    "The run {name} friction ended without a proof of optimality ({}): read the comparison as one of the best \
+                    "The run {name} friction ended unconfirmed ({}): read the comparison as one of the best \
                      shapes found in {} evaluations.",
                     run.report.termination, run.report.counts.evaluations
                 ));

@@ -92,7 +92,12 @@ impl KeptRun {
         let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
         let of_surface =
             differences(&own, loaded, |field| is_below(field, &SURFACES) && !is_below(field, &NO_SURFACE))?;
-        let other_files = || other_files(&own.case.scene, &loaded.case.scene);
+        // Of a coarse-to-fine optimization, each of its meshes.
+        let other_files = || {
+            let first = other_files(&own.case.scene, &loaded.case.scene)?;
+            let other = |stage: &PlannedRun| other_files(&stage.case.scene, &loaded.case.scene).is_some();
+            stages(&own.case).iter().all(other).then_some(first)
+        };
         if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(other_files) {
             let [scene, run] = [&path, folder].map(|path| quoted(path.display().to_string()));
             let hint = format!("take its own scene: contact3d {scene} export --run {run} --out DIR2");

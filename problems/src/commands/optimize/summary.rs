@@ -56,15 +56,15 @@ fn bricks(scene: &Scene) -> Option<[usize; 3]> {
 /// How a run ended.
 pub fn ending(report: &Report) -> serde_json::Value {
     let termination = &report.termination;
-    json!({ "reason": termination, "text": termination.to_string(), "confirmed": report.is_proved() })
+    json!({ "reason": termination, "text": termination.to_string(), "confirmed": report.is_confirmed() })
 }
 
-/// Whether the end of a run is proved, and if not, why and what to do: a line of its own.
-pub fn proof(report: &Report) -> String {
+/// Whether the end of a run is confirmed, and if not, why and what to do: a line of its own.
+pub fn verdict(report: &Report) -> String {
     let termination = &report.termination;
-    match report.is_proved() {
-        true => format!("Proved: {termination}"),
-        false => format!("Not proved: {termination}; {}", report.advice()),
+    match report.is_confirmed() {
+        true => termination.to_string().replacen("confirmed", "Confirmed", 1),
+        false => format!("Not confirmed: {termination}; {}", report.advice()),
     }
 }
 
@@ -81,7 +81,7 @@ const ROUNDING: f64 = 1e-12;
 fn optima(runs: &[ContactRun]) -> usize {
     let decrease = runs.iter().map(|run| run.report.start_value - run.report.value).fold(0.0, f64::max);
     // The end of an attempt is none.
-    let confirmed = runs.iter().filter(|run| run.report.is_proved() && !run.stage.label.part.is_attempt());
+    let confirmed = runs.iter().filter(|run| run.report.is_confirmed() && !run.stage.label.part.is_attempt());
     different(confirmed.map(|run| run.report.value).collect(), decrease)
 }
 
@@ -121,7 +121,7 @@ impl Ended<'_> {
         let ContactRun { stage: ContactStage { objective, .. }, report, .. } = self.last;
         let shapes = self.shapes.each_ref();
         let scene = &objective.solver().problem().scene;
-        let lead = vec![format!("{}: {}", scene.name, shape_facts::found(objective, shapes)), proof(report)];
+        let lead = vec![format!("{}: {}", scene.name, shape_facts::found(objective, shapes)), verdict(report)];
         let mut result = vec![shape_facts::peak_pressure(&shapes)];
         result.extend(shape_facts::limits(&shapes));
         result.extend(self.limits()?);
@@ -208,13 +208,14 @@ impl Ended<'_> {
             let (report, name) =
                 (&run.report, run.stage.label.part.folder().unwrap_or("from the best".into()).replace('_', " "));
             let scene = &run.stage.objective.solver().problem().scene;
+            let end = if report.is_confirmed() { "confirmed".to_owned() } else { report.termination.to_string() };
             let values = vec![
                 scene_words::mesh(scene).into(),
                 report.start_value.into(),
                 report.value.into(),
                 report.counts.evaluations.into(),
                 Value::Rough(report.seconds),
-                report.termination.to_string().into(),
+                end.into(),
             ];
             Fact::row("", &name, values, "")
         };
@@ -275,13 +276,13 @@ impl Ended<'_> {
         if self.runs.ended.iter().filter(|run| run.stage.label.part != Part::Whole).count() > 1 {
             facts.push(
                 Fact::new("optima", "different optima", optima(&self.runs.ended), "")
-                    .meaning("different values of Θ at proved ends of the runs"),
+                    .meaning("different values of Θ at confirmed ends of the runs"),
             );
         }
         if self.runs.ended.len() < self.runs.asked {
             facts.push(Fact::new("", "runs begun", format!("{} of {}", self.runs.ended.len(), self.runs.asked), ""));
         }
-        Ok(Group::new("Course of the optimization", facts).with_words(proof(report) + "."))
+        Ok(Group::new("Course of the optimization", facts).with_words(verdict(report) + "."))
     }
 
     /// How attempts agree, and what fairness has changed.

@@ -37,13 +37,13 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
 /// What an optimization has found, in words.
 pub fn what(ended: &Ended<'_>) -> String {
     let shapes = ended.shapes;
-    let proved = if ended.last.report.is_proved() { "proved" } else { "unproved" };
+    let verdict = if ended.last.report.is_confirmed() { "confirmed" } else { "not confirmed" };
     match (shapes[1].keeps_limits(), is_better(shapes[0].value, shapes[1].value)) {
         (false, _) => "a shape outside the limits".to_owned(),
-        (true, true) => format!("optimized shape, {proved}"),
+        (true, true) => format!("optimized shape, {verdict}"),
         // A start outside the limits may be better, but does not count.
-        (true, false) if !shapes[0].keeps_limits() => format!("a shape within the limits, {proved}"),
-        (true, false) => format!("no better shape was found, {proved}"),
+        (true, false) if !shapes[0].keeps_limits() => format!("a shape within the limits, {verdict}"),
+        (true, false) => format!("no better shape was found, {verdict}"),
     }
 }
 
@@ -59,8 +59,8 @@ pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShap
 /// The report of a comparison with and without friction.
 pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> Page {
     let objective = &comparison.runs[0].stage.objective;
-    let confirmed = comparison.runs.iter().all(|run| run.report.is_proved());
-    let caveat = if confirmed { "" } else { " Not both runs ended with a proof of optimality." };
+    let confirmed = comparison.runs.iter().all(|run| run.report.is_confirmed());
+    let caveat = if confirmed { "" } else { " Not both runs ended confirmed." };
     let lead = facts.lead.first().cloned().unwrap_or_default() + caveat;
     let mut table = facts.groups[0].section();
     table.blocks.push(Block::List(facts.lead.clone()));

@@ -15,7 +15,7 @@ pub fn pictures(blocks: Vec<Block>) -> Section {
 
 /// What the shape that an optimization ended at is called.
 pub fn found_label(report: &Report) -> &'static str {
-    match (report.is_feasible(), report.is_proved()) {
+    match (report.is_feasible(), report.is_confirmed()) {
         (false, _) => "outside limits",
         (true, true) => "optimum",
         (true, false) => "best found",

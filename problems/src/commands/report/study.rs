@@ -66,14 +66,14 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     folder.write("report.html", page.html())
 }
 
-/// How many optimizations have no proof, in a sentence; nothing where all have one.
+/// How many optimizations are not confirmed, in a sentence; nothing where all are.
 fn unconfirmed(study: &StudyJson) -> String {
     let runs = study.rows.iter().filter_map(|row| Shown::of(row)?.solved.optimization.as_ref());
     let (all, open) = runs.fold((0, 0), |(all, open), run| (all + 1, open + usize::from(!run.confirmed)));
     match open {
         0 => String::new(),
         _ => format!(
-            " {open} of {all} optimizations ended without a proof; their rows hold the best shape found, and the column \"ended\" says why."
+            " {open} of {all} optimizations ended unconfirmed; their rows hold the best shape found, and the column \"ended\" says why."
         ),
     }
 }

@@ -192,15 +192,15 @@ fn not_checked(loaded: &LoadedScene, ended: &Ended<'_>) -> Section {
         0 | 1 => "The error of the mesh: the shape was computed on one mesh.".to_owned(),
         count => format!("The error of the last of {count} meshes."),
     };
-    let proof = match ended.last.report.is_proved() {
-        true => "Whether a shape far from this one is better: the proof is one of stationarity.",
-        false => "Whether the shape can still be improved: the run ended without a proof.",
+    let verdict = match ended.last.report.is_confirmed() {
+        true => "Whether a shape far from this one is better: only stationarity is confirmed.",
+        false => "Whether the shape can still be improved: the run ended unconfirmed.",
     };
     let limited = match loaded.case.limits.is_empty() {
         true => "Strength and fatigue: no quantity is limited.",
         false => "Strength and fatigue beyond the limits above.",
     };
-    let mut lines = vec![limited.to_owned(), mesh, proof.to_owned(), "Other loads than those above.".to_owned()];
+    let mut lines = vec![limited.to_owned(), mesh, verdict.to_owned(), "Other loads than those above.".to_owned()];
     let no_checks = ended.left_out.iter().any(|words| words.contains("--no-checks"));
     let unique = match no_checks {
         true => "Uniqueness of the contact state and the limits of linear elasticity (--no-checks).",

@@ -102,7 +102,7 @@ pub struct Optimized {
     /// Evaluations on the mesh that took most.
     pub most_evaluations: usize,
     pub termination: String,
-    /// Whether the shape is proved stationary.
+    /// Whether the shape is confirmed.
     pub confirmed: bool,
     /// Whether more evaluations may improve it.
     pub can_continue: bool,
@@ -247,7 +247,7 @@ fn optimum(
         evaluations: run.runs.evaluations(),
         most_evaluations: run.runs.ended.iter().map(|run| run.report.counts.evaluations).max().unwrap_or(0),
         termination: chosen.report.termination.to_string(),
-        confirmed: chosen.report.is_proved(),
+        confirmed: chosen.report.is_confirmed(),
         had_to_move: !first.keeps_limits(),
         can_continue: run.runs.can_continue(),
     };

@@ -1,4 +1,4 @@
-//! Error against run time: the study behind `docs/accuracy.md`.
+//! Error against run time: the study behind "Accuracy" of `docs/measurements.md`.
 //!
 //! ```text
 //! cli ─┬─ discretisation, manufactured      error against bricks, dofs, seconds

@@ -1,4 +1,4 @@
-//! `headline`: the tables of README.md and docs/results.md, computed anew; see `--help`.
+//! `headline`: the tables that docs/measurements.md begins with, computed anew; see `--help`.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! How work, time and memory grow with the mesh: the study behind `docs/scaling.md`.
+//! How work, time and memory grow with the mesh: a study behind `docs/measurements.md`.
 //!
 //! ```text
 //! cli ─ cases ─ measure, memory ─ ScalingRow ─ table (Markdown) or JSON

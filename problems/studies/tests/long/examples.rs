@@ -33,7 +33,7 @@ fn reaches(scene: &str, objective: f64, most_evaluations: u64) {
 
 /// The page states a tolerance of a hundredth.
 #[test]
-fn the_seat_of_the_bracket_is_proved() {
+fn the_seat_of_the_bracket_is_confirmed() {
     let run = optimized("bracket");
     let found = run["objective"].as_f64().unwrap();
     // Another path may end a little lower or higher.
@@ -42,13 +42,13 @@ fn the_seat_of_the_bracket_is_proved() {
 }
 
 #[test]
-fn the_crown_of_the_roller_is_proved() {
+fn the_crown_of_the_roller_is_confirmed() {
     reaches("roller", 2593.454, 36);
 }
 
 /// The objective of the taper is a squared deviation near 0, of which few digits are of use.
 #[test]
-fn the_profile_of_the_taper_is_proved() {
+fn the_profile_of_the_taper_is_confirmed() {
     let run = optimized("taper");
     let found = ["objective", "peak_pressure"].map(|key| match &run[key] {
         Value::Array(ends) => ends.last().and_then(Value::as_f64).unwrap(),
@@ -61,7 +61,7 @@ fn the_profile_of_the_taper_is_proved() {
 /// The optimum of one pair of meshes is evaluated on a finer pair: peak 3.5 %, Θ 5.1 %, its fourth root, which is a
 /// pressure, 1.2 %.
 #[test]
-fn the_seat_of_the_ball_is_proved_and_holds_on_finer_meshes() {
+fn the_seat_of_the_ball_is_confirmed_and_holds_on_finer_meshes() {
     let run = optimized("ball_socket");
     assert!(run["evaluations"].as_u64() <= Some(20), "{}", run["evaluations"]);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

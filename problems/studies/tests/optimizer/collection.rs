@@ -156,8 +156,8 @@ impl Changed<'_> {
             Termination::Stationary { gap, .. } if above => {
                 // In a finite box the bound is a proof; it is relative to the values as they are, shift included.
                 let holds = |gap: f64| factor * size * run.excess <= gap && gap <= GAP.0 * report.value.abs();
-                let proved = wide && gap.is_some_and(holds) || LOCAL_MINIMA.iter().any(is_there);
-                (!proved).then_some("confirmed above the minimum")
+                let bounded = wide && gap.is_some_and(holds) || LOCAL_MINIMA.iter().any(is_there);
+                (!bounded).then_some("confirmed above the minimum")
             }
             Termination::NoiseLimit { .. } if noisy && problem.convex && run.excess > NOISE_GAP * noise => {
                 Some("more than noise above the minimum")

@@ -26,8 +26,9 @@ pub struct Cell<'a> {
     pub nodes: &'a [u32],
 }
 
-/// Nodes, cells and their names. The positions of the nodes are those of the reference shape.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Nodes, cells and their names. The positions of the nodes are those of the reference shape. Meshes are equal whatever
+/// their files are called.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Mesh {
     nodes: Vec<[f64; 3]>,
     kinds: Vec<CellKind>,
@@ -47,6 +48,18 @@ pub struct Mesh {
     empty_names: BTreeSet<String>,
     /// The piece of every cell, where the mesh brings its own.
     pieces: Option<Vec<u32>>,
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        fn cells(mesh: &Mesh) -> impl PartialEq + '_ {
+            (&mesh.nodes, &mesh.kinds, &mesh.starts, &mesh.connectivity, &mesh.volume_of, &mesh.pieces)
+        }
+        fn names(mesh: &Mesh) -> impl PartialEq + '_ {
+            (&mesh.volumes, &mesh.faces, &mesh.node_sets, &mesh.inner_faces, &mesh.group_tags)
+        }
+        cells(self) == cells(other) && names(self) == names(other)
+    }
 }
 
 /// The name of the only volume of a mesh without named volumes.
