@@ -121,7 +121,7 @@
 //! assert!(certificate.active_cuts().any(|cut| cut.point[0] <= cut.point[1]));
 //! assert!((certificate.row_multipliers[0] - 0.25).abs() < 1e-3);
 //! // Computed again from its cuts and multipliers alone, without the optimizer.
-//! assert!(certificate.recheck(&set)?.proves(1e-3, 1e-6));
+//! assert!(certificate.recheck(&set)?.confirms(1e-3, 1e-6));
 //! # Ok(())
 //! # }
 //! ```

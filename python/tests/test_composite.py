@@ -116,6 +116,8 @@ def test_a_composite_run_is_resumed(tmp_path):
     nonsmooth.minimize_composite("max", curve, [2.0, 2.0], journal=tmp_path, options={"max_evaluations": 4})
     result = nonsmooth.minimize_composite("max", curve, [2.0, 2.0], resume=tmp_path)
     assert same_bits(result.x, whole.x) and result.nfev == whole.nfev
+    with pytest.raises(ValueError, match="another objective.*outer function"):
+        nonsmooth.minimize_composite("l1", curve, [2.0, 2.0], resume=tmp_path)
 
 
 def test_a_number_of_outputs_that_changes_ends_the_run():

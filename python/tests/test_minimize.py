@@ -194,7 +194,7 @@ def test_callbacks_of_both_forms_and_their_stop():
 def test_the_certificate_is_computed_again_and_pickled():
     result = nonsmooth.minimize(l1, [5.0, -3.0], constraints=([[1, 1]], -np.inf, 2), options={"convex": True})
     check = result.recheck()
-    assert check.agrees and check.proves(1e-3, 1e-5) and check.composite_difference is None
+    assert check.agrees and check.confirms(1e-3, 1e-5) and check.composite_difference is None
     certificate = result.certificate
     assert abs(certificate.multipliers.sum() - 1) < 1e-9
     # The aggregate subgradient by hand: cuts and the row; the norm of the run is Euclidean without a box.

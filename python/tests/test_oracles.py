@@ -263,6 +263,37 @@ def test_a_resumed_run_ends_as_one_that_was_never_interrupted(tmp_path):
     assert same_bits(limited.x, whole.x) and len(calls) == whole.nfev
 
 
+def test_a_journal_of_another_call_is_refused_and_kept(tmp_path):
+    def fun(x, weight=1.0):
+        return weight * abs(x[0] - 3.0) + abs(x[1]), np.array([weight * np.sign(x[0] - 3.0), np.sign(x[1])])
+
+    def disc(upper):
+        return nonsmooth.NonlinearConstraint(lambda x: x @ x, -np.inf, upper, lambda x: 2 * x)
+
+    call = dict(fun=fun, x0=[0.5, 0.5], args=(1.0,), bounds=[(-5, 5)] * 2, constraints=[disc(4.0)])
+    nonsmooth.minimize(**call, journal=tmp_path, options={"max_evaluations": 3})
+    kept = (tmp_path / "journal.jsonl").read_bytes()
+    for what, other in [
+        ("args", {"args": (2.0,)}),
+        ("bounds and rows", {"bounds": [(-5, 4), (-5, 5)]}),
+        ("bounds and rows", {"constraints": [disc(4.0), ([[1.0, 1.0]], -np.inf, 2.0)]}),
+        ("sides of constraints", {"constraints": [disc(1.0)]}),
+        ("options", {"options": {"convex": True}}),
+        ("options", {"x_scale": [1.0, 2.0]}),
+    ]:
+        with pytest.raises(ValueError, match=f"another objective.*{what}"):
+            nonsmooth.minimize(**{**call, **other}, resume=tmp_path)
+        assert (tmp_path / "journal.jsonl").read_bytes() == kept
+    resumed = nonsmooth.minimize(**call, resume=tmp_path, options={"max_evaluations": 100, "tolerance": 1e-8})
+    assert resumed.success and abs(resumed.x[0] - 2.0) < 1e-6 and resumed.warnings == []
+
+
+def test_a_run_cut_short_says_that_its_point_violates_a_constraint():
+    far = nonsmooth.NonlinearConstraint(lambda x: x @ x, 4.0, np.inf, lambda x: 2 * x)
+    result = nonsmooth.minimize(l1, [0.1, 0.1], constraints=far, options={"max_evaluations": 1})
+    assert not result.success and "; x violates a nonlinear constraint by 4.0e+00; " in result.message
+
+
 def test_journals_are_neither_overwritten_nor_confused(tmp_path):
     nonsmooth.minimize(crescent, [-1.5, 2.0], journal=tmp_path / "run", options={"max_evaluations": 3})
     with pytest.raises(FileExistsError, match="pass resume="):

@@ -77,7 +77,7 @@ pub struct CertificateCheck {
 impl CertificateCheck {
     /// Whether the point is stationary up to the tolerances: aggregate norm and error as given, multipliers and
     /// feasibility to 1e-9.
-    pub fn proves(&self, norm_tolerance: f64, error_tolerance: f64) -> bool {
+    pub fn confirms(&self, norm_tolerance: f64, error_tolerance: f64) -> bool {
         self.aggregate_norm <= norm_tolerance
             && self.aggregate_error <= error_tolerance
             && self.multiplier_defect <= 1e-9

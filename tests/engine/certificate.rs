@@ -23,7 +23,7 @@ fn unconstrained_certificate_proves_the_value() {
     let report = minimize(&cb3(), None, &[2.0, 2.0]);
     let certificate = report.certificate.unwrap();
     assert_agrees(&certificate, &Polyhedron::unbounded(2));
-    assert!(certificate.recheck(&Polyhedron::unbounded(2)).unwrap().proves(1e-3, 1e-5), "{certificate}");
+    assert!(certificate.recheck(&Polyhedron::unbounded(2)).unwrap().confirms(1e-3, 1e-5), "{certificate}");
     assert!(certificate.active_cuts().count() >= 2);
     assert_eq!(certificate.point, report.solution);
 }
@@ -36,7 +36,7 @@ fn constrained_certificate_uses_the_multipliers_of_rows_and_bounds() {
     assert_agrees(&certificate, &set);
     assert!(certificate.row_multipliers[0].abs() > 1e-3);
     let check = certificate.recheck(&set).unwrap();
-    assert!(check.proves(1e-3, 1e-5), "{check:?} {:?} {}", report.termination, report.value);
+    assert!(check.confirms(1e-3, 1e-5), "{check:?} {:?} {}", report.termination, report.value);
 }
 
 /// Θ(y) ≥ Θ(x̂) − ‖z̃‖‖y − x̂‖ − ẽ, with the exact Θ on both sides, for functions whose values are inaccurate.
@@ -74,7 +74,7 @@ fn a_forged_certificate_does_not_agree() {
     let active = certificate.cuts.iter_mut().find(|cut| cut.multiplier > 1e-3).unwrap();
     active.multiplier += 0.5;
     let check = certificate.recheck(&Polyhedron::unbounded(2)).unwrap();
-    assert!(!check.proves(1e-3, 1e-5));
+    assert!(!check.confirms(1e-3, 1e-5));
     assert!(certificate.recheck(&Polyhedron::unbounded(3)).is_err());
 }
 

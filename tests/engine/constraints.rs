@@ -167,14 +167,14 @@ fn multipliers_and_certificate_are_those_of_the_optimum() {
     let certificate = report.certificate.unwrap();
     let set = Polyhedron::unbounded(4);
     let check = certificate.recheck(&set).unwrap();
-    assert!(check.proves(1e-2, 1e-6), "{check:?}");
-    // A certificate without its constraints proves nothing.
+    assert!(check.confirms(1e-2, 1e-6), "{check:?}");
+    // A certificate without its constraints confirms nothing.
     let mut spoiled = certificate.clone();
     spoiled.constraints.as_mut().unwrap().cuts.clear();
-    assert!(!spoiled.recheck(&set).unwrap().proves(1e-2, 1e-6));
+    assert!(!spoiled.recheck(&set).unwrap().confirms(1e-2, 1e-6));
     let mut moved = certificate;
     moved.constraints.as_mut().unwrap().values[0] = 1.0;
-    assert!(!moved.recheck(&set).unwrap().proves(1e-2, 1e-6));
+    assert!(!moved.recheck(&set).unwrap().confirms(1e-2, 1e-6));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Formulas in x1, x2 and x3 with the precedence of mathematics, for numbers with or without derivatives.
+//! Formulas in x1, x2 and x3 with the precedence of mathematics, for numbers with or without derivatives. Available
+//! crates count powers from the left, bind signs more than powers, or report errors without a place.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }

@@ -1,4 +1,5 @@
 //! Scientific figures as SVG, and HTML pages that hold them: without other programs, system libraries or system fonts.
+//! Plotting libraries draw axes and curves only, no maps and status plans, and PNG needs some forty packages.
 //!
 //! ```text
 //! numbers ─┬─ Map, Classes, Lines, Convergence ─── Figure (SVG)

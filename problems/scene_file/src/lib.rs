@@ -4,7 +4,8 @@
 //! text → table → checked against the schema (unknown, missing, type, range) → [`SceneFile`] → [`Case`]
 //! ```
 //! The documentation of the fields below, with their units and ranges, is the only source of the JSON schema, of the
-//! checks, of the comments that `--print-scene` writes and of the table in `docs/fields.md`.
+//! checks, of the comments that `--print-scene` writes and of the list in `docs/fields.md`: five copies would not stay
+//! equal. Checks of several fields stand in the conversion.
 
 mod allowed;
 mod bodies;

@@ -151,6 +151,18 @@ fn a_draft_knows_forms_and_asks_what_it_cannot_know() {
     assert!(text.contains("loads = [{ face = \"load\", force = [0.0, 0.0, -"), "{text}");
     assert_eq!(open(&text), ["support"], "{text}");
     assert!(preview(&text).gaps.iter().all(|gap| gap.abs() < 1e-9));
+    // A quarter of a rounded sole: its mean normal leans, the floor does not.
+    let sole = |[x, y, z]: [f64; 3]| {
+        let [x, y] = [10.0 * x, 8.0 * y];
+        let low = 20.0 - (400.0 - x * x).sqrt();
+        [x, y, low + (15.0 - low) * z]
+    };
+    let text = drafted(&named_block(["symmetry left", "side", "symmetry front", "back", "sole", "load"], sole));
+    assert!(
+        text.contains("form = \"tilted-plane\"\npoint = [0.0, ") && text.contains("\nnormal = [0.0, 0.0, -1.0]"),
+        "{text}"
+    );
+    assert!(preview(&text).gaps.iter().all(|gap| *gap > -1e-9));
     // Names that say nothing.
     let text = drafted(&named_block(["a", "b", "c", "d", "e", "f"], |x| x.map(|x| 20.0 * x)));
     assert_eq!(open(&text), ["support", "load", "shape", "contact"], "{text}");

@@ -117,7 +117,7 @@ impl RecheckJson {
             [slopes.sum(), certificate.value.abs()].map(|scale: f64| MAX_ROUNDING * scale);
         let aggregate_norm = Number::new(certificate.aggregate_norm, check.aggregate_norm, norm_rounding);
         let aggregate_error = Number::new(certificate.aggregate_error, check.aggregate_error, error_rounding);
-        let admissible = check.proves(f64::INFINITY, f64::INFINITY);
+        let admissible = check.confirms(f64::INFINITY, f64::INFINITY);
         Self {
             agrees: aggregate_norm.agrees && aggregate_error.agrees && admissible && point_equals_controls,
             aggregate_norm,

@@ -6,10 +6,12 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use contact::error::SceneError;
-use scene_file::{MethodName, QuantityName, SceneFile, Setting, choices};
+use scene_file::{LoadSection, MethodName, QuantityName, SceneFile, Setting, choices};
 
-/// Largest traction of a scene, MPa.
+/// Largest traction, MPa, force, N, and moment, N mm, of a scene.
 const LARGEST_TRACTION: f64 = 1e15;
+const LARGEST_FORCE: f64 = 1e18;
+const LARGEST_MOMENT: f64 = 1e21;
 
 /// An option and what it changes.
 pub struct SceneOption {
@@ -155,35 +157,46 @@ fn factor(_: &'static [&'static str], text: &str) -> Settings {
     }
 }
 
-/// All loads times the factor in the text.
+/// All loads times the factor in the text, those that load cases state too.
 fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings {
     let factor: f64 = text.parse().unwrap_or(f64::NAN);
-    for (number, body) in file.body.iter().enumerate() {
-        for (index, load) in body.loads.iter().enumerate() {
-            let mut scale = |name: &str, unit: &str, vector: Option<&[f64]>| {
-                let Some(vector) = vector else { return Ok(()) };
-                let scaled: Vec<f64> = vector.iter().map(|part| factor * part).collect();
-                if let Some(axis) = scaled.iter().position(|part| part.abs() > LARGEST_TRACTION) {
-                    let part = vector[axis];
-                    let allowed = format!("|{name}| ≤ {LARGEST_TRACTION:e} {unit}, here {factor:e} times {part:e}");
-                    return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
-                }
-                let value = if name == "pressure" { format!("{:?}", scaled[0]) } else { format!("{scaled:?}") };
-                settings.push(Setting::read(&format!("body[{number}].loads[{index}].{name}"), &value)?);
-                Ok(())
-            };
-            scale("traction", "MPa", load.traction.as_ref().map(<[f64; 3]>::as_slice))?;
-            scale("pressure", "MPa", load.pressure.as_ref().map(std::slice::from_ref))?;
-            scale("force", "N", load.force.as_ref().map(<[f64; 3]>::as_slice))?;
-            scale("moment", "N mm", load.moment.as_ref().map(<[f64; 3]>::as_slice))?;
-            scale("body_force", "N/mm³", load.body_force.as_ref().map(<[f64; 3]>::as_slice))?;
-            if let Some(texts) = &load.formula {
-                let texts: Vec<String> = texts.iter().map(|text| format!("{factor:?}*({text})")).collect();
-                settings.push(Setting::read(&format!("body[{number}].loads[{index}].formula"), &format!("{texts:?}"))?);
-            }
+    let bodies = file.body.iter().enumerate().map(|(number, body)| (format!("body[{number}]"), &body.loads));
+    let cases = file.case.iter().enumerate().flat_map(|(case, section)| {
+        let own = section.body.iter().enumerate();
+        own.filter_map(move |(number, body)| Some((format!("case[{case}].body[{number}]"), body.loads.as_ref()?)))
+    });
+    for (place, loads) in bodies.chain(cases) {
+        for (index, load) in loads.iter().enumerate() {
+            scaled(load, factor, &format!("{place}.loads[{index}]"), &mut settings)?;
         }
     }
     Ok(settings)
+}
+
+/// The settings that multiply a load.
+fn scaled(load: &LoadSection, factor: f64, place: &str, settings: &mut Vec<Setting>) -> Result<(), SceneError> {
+    let vectors = [
+        ("traction", "MPa", LARGEST_TRACTION, load.traction.as_ref().map(<[f64; 3]>::as_slice)),
+        ("pressure", "MPa", LARGEST_TRACTION, load.pressure.as_ref().map(std::slice::from_ref)),
+        ("force", "N", LARGEST_FORCE, load.force.as_ref().map(<[f64; 3]>::as_slice)),
+        ("moment", "N mm", LARGEST_MOMENT, load.moment.as_ref().map(<[f64; 3]>::as_slice)),
+        ("body_force", "N/mm³", LARGEST_TRACTION, load.body_force.as_ref().map(<[f64; 3]>::as_slice)),
+    ];
+    for (name, unit, largest, vector) in vectors {
+        let Some(vector) = vector else { continue };
+        let scaled: Vec<f64> = vector.iter().map(|part| factor * part).collect();
+        if let Some(axis) = scaled.iter().position(|part| part.abs() > largest) {
+            let allowed = format!("|{name}| ≤ {largest:e} {unit}, here {factor:e} times {:e}", vector[axis]);
+            return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
+        }
+        let value = if name == "pressure" { format!("{:?}", scaled[0]) } else { format!("{scaled:?}") };
+        settings.push(Setting::read(&format!("{place}.{name}"), &value)?);
+    }
+    if let Some(texts) = &load.formula {
+        let texts: Vec<String> = texts.iter().map(|text| format!("{factor:?}*({text})")).collect();
+        settings.push(Setting::read(&format!("{place}.formula"), &format!("{texts:?}"))?);
+    }
+    Ok(())
 }
 
 /// The details of the file belong to the file's quantity, as its method does.

@@ -192,3 +192,19 @@ fn a_comparison_takes_friction_from_every_case() {
     let text = read.unwrap_or_else(|_| panic!("{names:?}"));
     assert!(!text.contains("friction = 0.2"), "{text}");
 }
+
+/// A factor on all loads acts on those that a case states in place of the scene's.
+#[test]
+fn the_factor_on_loads_acts_on_those_of_cases() {
+    let scene = format!("{}/scenes/bracket.toml", env!("CARGO_MANIFEST_DIR"));
+    let loads = |options: &[&str]| -> Vec<f64> {
+        let seen = json(contact3d(), &[&[scene.as_str(), "look", "--json"], options].concat());
+        let cases = seen["cases"].as_array().unwrap();
+        cases.iter().map(|case| case["before"]["bodies"][0]["load"][2].as_f64().unwrap()).collect()
+    };
+    let (once, twice) = (loads(&[]), loads(&["--load-factor", "2"]));
+    assert!(once.len() == 3 && once.iter().all(|force| *force < -3e4), "{once:?}");
+    for (once, twice) in once.iter().zip(&twice) {
+        assert!((twice / once - 2.0).abs() < 1e-12, "{once} {twice}");
+    }
+}

@@ -80,7 +80,36 @@ fn meshes_of_files_grow_and_resume() {
     assert_eq!(found(&kit::json(CONTACT, &resume)), found(&whole));
     let [scene, last, exported] = ["scene.toml", "mesh_2", "exported"].map(|name| folder.join(name));
     kit::json(CONTACT, &[text(&scene), "export", "--run", text(&last), "--out", text(&exported), "--json"]);
+    // The shape of the whole run lies on its last mesh, whichever of its scenes the command has.
+    for (index, own) in [text(&scene), lug].into_iter().enumerate() {
+        let exported = scratch.path().join(format!("exported_{index}"));
+        let export = [own, "export", "--run", text(&folder), "--msh", "--out", text(&exported), "--json"];
+        let files = kit::json(CONTACT, &export)["files"].to_string();
+        assert!(files.contains("3539 nodes"), "{files}");
+    }
     kit::refused(CONTACT, &[lug, "--continuation", "4,none.msh"], &["--continuation", "bricks alone"]);
+}
+
+/// Further starts of a lattice differ from each other, and are no constants at the bounds.
+#[test]
+fn further_starts_of_a_lattice_are_shapes() {
+    let scratch = kit::scratch();
+    let lug = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lug_hex8.toml");
+    let folder = scratch.path().join("run");
+    let options = ["--starts", "4", "--single", "--max-evaluations", "1", "--no-checks", "--json", "--out"];
+    kit::json(CONTACT, &[&[lug], &options[..], &[text(&folder)]].concat());
+    let first = |start: usize| -> Vec<f64> {
+        let journal = std::fs::read_to_string(folder.join(format!("start_{start}/journal.jsonl"))).unwrap();
+        let entry: serde_json::Value = serde_json::from_str(journal.lines().nth(1).unwrap()).unwrap();
+        serde_json::from_value(entry["point"].clone()).unwrap()
+    };
+    let starts = [2, 3, 4].map(first);
+    for (index, start) in starts.iter().enumerate() {
+        let [low, high] = [f64::min, f64::max].map(|side| start.iter().copied().reduce(side).unwrap());
+        let at_bounds = start.iter().filter(|control| control.abs() >= 2.0).count();
+        assert!(high - low > 0.1 && at_bounds <= start.len() / 10, "{start:?}");
+        assert!(starts[..index].iter().all(|other| other != start), "{start:?}");
+    }
 }
 
 /// Two blocks whose facing sides are shaped: heights of the lower one, a lattice in space of the upper one.

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from . import _constraints, _engine, _nonlinear, _options, _result
+from ._identity import identity
 from ._numbers import real
 
 #: Runs within runs. A function that calls itself without end must not run out of stack in the engine, which would kill the process.
@@ -77,7 +78,8 @@ def minimize(
         then returns ``(value, subgradient, c, J)`` with the m × n matrix J of derivatives of c, and may add ``error_bound``.
     journal, resume : path, optional
         ``journal``: every evaluation is kept in this new folder. ``resume``: continues the run of such a folder, which
-        ends as if it had never been interrupted; call it with the same arguments. Limits may be raised.
+        ends as if it had never been interrupted; call it with the same arguments. Limits and the tolerance may differ; another
+        start, other ``args``, constraints, sides or options are refused. The function itself must be the same, too.
 
     Returns
     -------
@@ -134,7 +136,7 @@ def minimize(
     """
     return _run(
         _joined(fun, jac, args), fun, x0, bounds, constraints, options, callback, journal, resume,
-        tol=tol, x_scale=x_scale, kinds=constraint_kinds, jac=jac,
+        tol=tol, x_scale=x_scale, kinds=constraint_kinds, jac=jac, args=args,
     )
 
 
@@ -218,7 +220,7 @@ def minimize_composite(
     smooth = None if smooth is None else _with_args(smooth, args)
     return _run(
         _joined(fun, True, args), fun, x0, bounds, constraints, options, callback, journal, resume,
-        tol=tol, x_scale=x_scale, kinds=constraint_kinds, outer=outer, smooth=smooth,
+        tol=tol, x_scale=x_scale, kinds=constraint_kinds, outer=outer, smooth=smooth, args=args,
     )
 
 
@@ -331,7 +333,7 @@ def takes_accuracy(fun):
 
 def _run(
     joined, fun, x0, bounds, constraints, options, callback, journal, resume,
-    *, tol, x_scale, kinds, jac=True, outer=None, smooth=None,
+    *, tol, x_scale, kinds, jac=True, outer=None, smooth=None, args=(),
 ):
     x0 = np.atleast_1d(real(x0, "x0"))
     if x0.ndim != 1 or x0.size == 0:
@@ -342,7 +344,11 @@ def _run(
     admissible = _constraints.read(bounds, [one for _, one in places if not _nonlinear.is_nonlinear(one)], x0.size)
     apart = [(place, one) for place, one in places if _nonlinear.is_nonlinear(one)]
     nonlinear = _nonlinear.Nonlinear(apart, kinds, np.clip(x0, admissible["lower"], admissible["upper"]))
-    name = getattr(fun, "__qualname__", type(fun).__qualname__)
+    name = nonlinear.identity(getattr(fun, "__qualname__", type(fun).__qualname__))
+    known_by = identity(
+        name, config, args=args, bounds_and_rows=admissible, sides_of_constraints=nonlinear.sides, outer_function=outer,
+        smooth_function=smooth, options=scaling,
+    )
     setup = {
         "fun": joined,
         "jac_apart": jac is not True,
@@ -356,7 +362,7 @@ def _run(
         "scaling": scaling,
         "callback": told(callback),
         "disp": disp,
-        "journal": journal_of(journal, resume, nonlinear.identity(name)),
+        "journal": journal_of(journal, resume, known_by),
     }
     return drive(_engine.minimize, setup, outer, nonlinear)
 

@@ -79,6 +79,11 @@ class Nonlinear:
         counts = [f"{self.kinds.count(kind)} {kind}" for kind in KINDS.values() if kind in self.kinds]
         return f"{name} with constraints: {', '.join(counts)}" if counts else name
 
+    @property
+    def sides(self):
+        """Which components are bounded by which sides."""
+        return [(rows.index, rows.sign, rows.sides, rows.kinds) for rows in self._rows]
+
     def _evaluate(self, x):
         found = [constraint(x.copy()) for constraint in self._apart]
         return np.concatenate([values for values, _ in found]), np.vstack([jacobian for _, jacobian in found])

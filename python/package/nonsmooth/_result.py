@@ -84,7 +84,7 @@ class Recheck:
     composite_difference: "float | None"
     agrees: bool
 
-    def proves(self, norm_tolerance, error_tolerance):
+    def confirms(self, norm_tolerance, error_tolerance):
         """Whether the point is stationary up to these tolerances.
 
         Parameters
@@ -144,10 +144,14 @@ class Result(OptimizeResult):
         One record per evaluation.
     counts : dict
         Steps by kind, subproblems.
+    largest_violation : float
+        The largest violation of bounds and linear constraints at x.
+    start_value, seconds : float
+        Value at the start, and time of the run.
     warnings : list of str
         What went wrong without ending the run, a journal that cannot be written for example.
     limits : list of dict
-        For scenes with limits, one each: ``excess``, the limited quantity minus its limit, ``satisfied``, and ``multiplier``, by how much
+        For nonlinear constraints and limits of scenes, one each: ``excess``, the limited quantity minus its limit, ``satisfied``, and ``multiplier``, by how much
         theta would fall per unit more.
     runs : list of dict
         For scenes, the runs that the optimization consists of (attempts, starts, meshes), one each: ``run``, the name of its folder
@@ -207,8 +211,12 @@ def build(outcome, outer=None, nonlinear=None):
     reason = outcome["reason"]
     history = History(json.loads(outcome["history"]))
     advice = _ADVICE | _ADVICE_IF_CONVEX if outcome["convex"] else _ADVICE
+    words = [outcome["message"], advice.get(reason, outcome["advice"])]
+    # The engine's words name the constraint where a run ends by itself.
+    if not outcome["confirmed"] and reason not in ("violated", "infeasible") and found["constr_violation"] > 0.0:
+        words.insert(1, f"x violates a nonlinear constraint by {found['constr_violation']:.1e}")
     result = Result(
-        message="; ".join([outcome["message"], advice.get(reason, outcome["advice"])]),
+        message="; ".join(words),
         success=outcome["confirmed"],
         status=STATUS[reason],
         reason=reason,

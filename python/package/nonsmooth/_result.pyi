@@ -21,7 +21,7 @@ class Recheck:
     open_side_multiplier: float
     composite_difference: float | None
     agrees: bool
-    def proves(self, norm_tolerance: float, error_tolerance: float) -> bool: ...
+    def confirms(self, norm_tolerance: float, error_tolerance: float) -> bool: ...
 
 class Result(OptimizeResult):
     x: NDArray[float64]

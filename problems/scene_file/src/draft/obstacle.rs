@@ -1,7 +1,8 @@
 //! The obstacle that a face touches, by the form of the face.
 
 use crate::draft::face::{Face, Form, dot, length};
-use crate::draft::text::{plain, unit_vector, vector};
+use crate::draft::roles::within;
+use crate::draft::text::{plain, straight, unit_vector, vector};
 use contact::patches::Primitive;
 
 /// The lines of a section, or what the user must say first.
@@ -10,9 +11,13 @@ pub(super) enum Proposal {
     Question(String),
 }
 
-/// The obstacle for a face.
-pub(super) fn obstacle(face: &Face<'_>) -> Proposal {
-    match (&face.form, face.direction()) {
+/// The obstacle for a face of a body with these planes of symmetry, to which a plane that it touches is normal.
+pub(super) fn obstacle(face: &Face<'_>, symmetric: &[&Face<'_>]) -> Proposal {
+    let normal = face.direction().map(|normal| match face.form {
+        Form::Plane => normal,
+        _ => straight(within(normal, symmetric)),
+    });
+    match (&face.form, normal) {
         (Form::Plane, Some(normal)) => Proposal::Lines(format!(
             "# The face is plane: a rigid plane that touches all of it.\n{}",
             plane(face, normal)

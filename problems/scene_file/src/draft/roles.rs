@@ -1,6 +1,7 @@
 //! What faces are for, by their names, and the direction in which contact acts.
 
 use crate::draft::face::{Face, Form, dot, length};
+use crate::draft::text::{straight, tidy};
 
 /// Parts of names that tell what a face is for; the first list that has one decides, and of several faces the order of
 /// the words.
@@ -99,11 +100,17 @@ fn direction(contacts: &[&Face<'_>], symmetric: &[&Face<'_>]) -> Option<[f64; 3]
     for face in contacts {
         (0..3).for_each(|axis| sum[axis] += face.normal[axis]);
     }
+    let sum = within(sum, symmetric);
+    let (size, area) = (length(sum), contacts.iter().map(|face| face.area).sum::<f64>());
+    (size > CLEAR * area).then(|| straight(sum).map(tidy))
+}
+
+/// The part of a vector along all planes of symmetry.
+pub(super) fn within(mut vector: [f64; 3], symmetric: &[&Face<'_>]) -> [f64; 3] {
     for face in symmetric.iter().filter(|face| matches!(face.form, Form::Plane)) {
         let normal = face.normal.map(|part| part / length(face.normal));
-        let across = dot(sum, normal);
-        (0..3).for_each(|axis| sum[axis] -= across * normal[axis]);
+        let across = dot(vector, normal);
+        (0..3).for_each(|axis| vector[axis] -= across * normal[axis]);
     }
-    let (size, area) = (length(sum), contacts.iter().map(|face| face.area).sum::<f64>());
-    (size > CLEAR * area).then(|| sum.map(|part| super::text::tidy(part / size)))
+    vector
 }

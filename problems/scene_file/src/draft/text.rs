@@ -6,6 +6,18 @@ pub(super) fn tidy(part: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
+/// Part of a direction below which a component comes from the facets of a mesh.
+const OF_FACETS: f64 = 1e-6;
+
+/// A direction as a unit vector, without components that come from the facets of a mesh alone.
+pub(super) fn straight(vector: [f64; 3]) -> [f64; 3] {
+    let unit = |vector: [f64; 3]| {
+        let size = vector.iter().map(|part| part * part).sum::<f64>().sqrt();
+        vector.map(|part| part / size)
+    };
+    unit(unit(vector).map(|part| if part.abs() < OF_FACETS { 0.0 } else { part }))
+}
+
 /// A number of two digits.
 pub(super) fn rounded(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {

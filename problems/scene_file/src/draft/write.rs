@@ -182,12 +182,12 @@ fn contacts(roles: &Roles<'_>) -> String {
             commented(&faces)
         );
     }
-    roles.contacts.iter().map(|face| contact(face)).collect()
+    roles.contacts.iter().map(|face| contact(face, &roles.symmetric)).collect()
 }
 
-fn contact(face: &Face<'_>) -> String {
+fn contact(face: &Face<'_>, symmetric: &[&Face<'_>]) -> String {
     let head = format!("[[contact]]\nslave = {{ face = {} }}\n", quoted(face.name));
-    match obstacle(face) {
+    match obstacle(face, symmetric) {
         Proposal::Lines(lines) => {
             format!("# It touches by its name: {}.\n{head}\n[contact.obstacle]\n{lines}\n", commented(face.name))
         }

@@ -95,10 +95,12 @@ impl Runs {
     }
 }
 
-/// The relative violation of the limits at the end of a run; 0 where all are kept.
+/// The violation of the limits at the end of a run, relative to their bounds, so that runs can be compared; 0 where all
+/// are kept.
 pub(super) fn violation(run: &ContactRun) -> f64 {
-    let violated = run.report.constraints.iter().filter(|limit| !limit.satisfied);
-    violated.map(|limit| limit.violation).fold(0.0, f64::max)
+    let limits = run.stage.objective.limits().zip(&run.report.constraints);
+    let violated = limits.filter(|(_, found)| !found.satisfied);
+    violated.map(|(limit, found)| found.value.abs() / limit.scale()).fold(0.0, f64::max)
 }
 
 /// The best of some runs: least violation of the limits, then least Θ.

@@ -100,7 +100,10 @@ fn other_start(
         (ceiling.clone(), ceiling.amax())
     } else {
         let net = coarse_net(&problem.scene)?.directions;
-        (&net * seeded_direction(net.ncols(), number as u64), CHANGE * first_step)
+        // Bounds would cut off a larger change, and leave a constant.
+        let widths = set.upper() - set.lower();
+        let room = widths.iter().copied().filter(|width| *width > 0.0).fold(f64::INFINITY, f64::min);
+        (&net * seeded_direction(net.ncols(), number as u64), (CHANGE * first_step).min(0.5 * room))
     };
     moved_start(set, start, &direction, length).map_err(|source| OptimizationError::Start { number, source })
 }

@@ -110,10 +110,9 @@ fn files(
     let file = |(number, body): (usize, &BodyScene)| {
         let mesh = &problem.bodies[number].mesh;
         let content = content(mesh, &positions[number], &start[number])?;
-        // The body of a mesh alone has always been the lower one here.
-        let name = if body.name == "body" { "lower" } else { &body.name };
+        let name = if body.name == "body" { "the body".to_owned() } else { format!("the {} body", body.name) };
         let (nodes, cells) = (mesh.node_count(), mesh.cell_count());
-        let what = format!("the mesh of the {name} body in this shape: {nodes} nodes, {cells} cells, mm");
+        let what = format!("the mesh of {name} in this shape: {nodes} nodes, {cells} cells, mm");
         Ok(OutputFile::new(body_file(&problem.scene, number, ending), content, what))
     };
     problem.scene.bodies.iter().enumerate().filter(|(_, body)| body.shape.is_some()).map(file).collect()

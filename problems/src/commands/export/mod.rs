@@ -52,8 +52,10 @@ struct FileJson {
 }
 
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
-    let (arguments, case) = (session.arguments, &loaded.case);
+    let arguments = session.arguments;
     let options = &arguments.export;
+    let run = options.run.as_ref().map(|folder| KeptRun::open(folder, loaded)).transpose()?;
+    let case = run.as_ref().and_then(|run| run.on_last_mesh.as_ref()).unwrap_or(&loaded.case);
     let scene = match options.friction_problem || options.inp {
         true => &case.named(options.case.as_deref()).map_err(|error| arguments.changes().blame(error))?.scene,
         false => &case.scene,
@@ -62,7 +64,6 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     if options.friction_problem {
         friction::check(&problem).map_err(|error| arguments.changes().blame(error))?;
     }
-    let run = options.run.as_ref().map(|folder| KeptRun::open(folder, loaded)).transpose()?;
     let (controls, origin) = match &run {
         Some(run) => run.shape(options.evaluation)?,
         None => start(&problem, loaded, arguments.shape.controls.as_deref())?,

@@ -42,6 +42,8 @@ const NO_SURFACE: [&str; 8] = [
 /// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
 const NO_FRICTION_PROBLEM: [&str; 7] =
     ["name", "solver", "optimizer", "output", "objective", "body.block.bricks", "body.block.subdomains"];
+/// The fields in which the scene of a run and that of a command may differ although they are the same problem.
+const SETTINGS: [&str; 5] = ["name", "solver", "optimizer", "output", "body.mesh"];
 /// Largest report that is read, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
@@ -55,6 +57,8 @@ pub struct KeptRun {
     layout: Layout,
     /// How its scene differs from that of the command in what makes a friction problem.
     pub differences: Vec<Difference>,
+    /// The scene on the last of several meshes that was begun, if the command has the scene of the run.
+    pub on_last_mesh: Option<Case>,
 }
 
 /// What the journals of a run are.
@@ -105,8 +109,12 @@ impl KeptRun {
         }
         let counts = |field: &str| !is_below(field, &NO_FRICTION_PROBLEM) && !is_below(field, &NO_SURFACE);
         let mut differences = differences(&own, loaded, counts)?;
+        let is_own = self::differences(&own, loaded, |field| !is_below(field, &SETTINGS))?.is_empty()
+            && self::other_files(&own.case.scene, &loaded.case.scene).is_none();
         let own = own.case;
-        differences.extend(other_bricks(&last(&own, root, folder).scene, &loaded.case.scene));
+        let last = last(&own, root, folder);
+        differences.extend(other_bricks(&last.scene, &loaded.case.scene));
+        let on_last_mesh = Some(last).filter(|_| is_own && !own.optimizer.continuation.is_empty());
         let (kind, parts) = if root == folder {
             let places = stages(&own)
                 .into_iter()
@@ -123,7 +131,7 @@ impl KeptRun {
         } else {
             (Kind::Part, vec![folder.to_owned()])
         };
-        Ok(Self { folder: folder.to_owned(), parts, kind, layout: Layout::of(&own.scene), differences })
+        Ok(Self { folder: folder.to_owned(), parts, kind, layout: Layout::of(&own.scene), differences, on_last_mesh })
     }
 
     /// The shape of an evaluation, or the one that the run has found.

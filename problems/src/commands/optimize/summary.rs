@@ -223,8 +223,7 @@ impl Ended<'_> {
         if several().next().is_some() {
             facts.push(Fact::json("stages", &several().map(stage).collect::<Vec<_>>())?);
         }
-        let columns =
-            ["bricks", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"].map(str::to_owned);
+        let columns = ["mesh", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"].map(str::to_owned);
         let words = "Pictures, course and certificate are those of the last mesh, of the best start, or of the last run from the best \
                      attempt. The result compares the best of several starts or attempts with its own start, and the last of \
                      several meshes with the start on the first.";
@@ -255,7 +254,7 @@ impl Ended<'_> {
             count("", "trial points: cuts", trials.cuts),
             count("", "trial points: curved model", trials.curved_model),
             count("", "trial points: composite model", trials.composite_model),
-            count("", "trial points: proof", trials.confirmation),
+            count("", "trial points: confirmation", trials.confirmation),
             count("", "subproblems", counts.qp_solves),
             count("", "of these, fallback solver", counts.qp_fallbacks),
             count("resumed_evaluations", "evaluations from the journal", *replayed),

@@ -21,6 +21,8 @@ pub const LOSS: f64 = 0.05;
 pub const SHARE: f64 = 0.95;
 /// Model error from which on the result is rough.
 const LARGEST_MODEL_ERROR: f64 = 0.2;
+/// Model error from which first derivatives say nothing of the changes.
+const MEANINGLESS_MODEL_ERROR: f64 = 0.5;
 /// Largest multiple of the amplitude that is looked at.
 pub const LARGEST_TIMES: f64 = 10.0;
 
@@ -71,6 +73,13 @@ pub struct FormError {
     pub allowed: Allowed,
 }
 
+impl Row {
+    /// Whether first derivatives say anything of what is allowed.
+    fn is_known(&self) -> bool {
+        self.allowed.is_none() || self.model_error.is_none_or(|error| error <= MEANINGLESS_MODEL_ERROR)
+    }
+}
+
 impl Allowed {
     pub fn words(&self) -> String {
         let least = if self.or_more { "at least " } else { "" };
@@ -81,6 +90,14 @@ impl Allowed {
 impl FormError {
     /// What an engineer asks: how good the shape must be made.
     pub fn verdict(&self) -> String {
+        if let Some(unknown) = self.rows.iter().find(|row| !row.is_known()) {
+            let percent = rounded(100.0 * unknown.model_error.unwrap_or(f64::NAN), 2);
+            return format!(
+                "what is allowed is not known: for {}, first derivatives are off by {percent} % of the largest change; take a \
+                 smaller amplitude, or judge by the worst states",
+                unknown.quantity
+            );
+        }
         let least = |row: &&Row| row.allowed.map_or(f64::INFINITY, |allowed| allowed.amplitude);
         let decisive = self.rows.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
         let name = decisive.map_or("", |row| row.quantity.as_str());
@@ -111,6 +128,9 @@ impl FormError {
     fn caution(&self) -> Option<String> {
         let errors = self.rows.iter().filter(|row| row.allowed.is_some()).filter_map(|row| row.model_error);
         let most = Some(errors.fold(0.0, f64::max)).filter(|most| *most > LARGEST_MODEL_ERROR)?;
+        if self.rows.iter().any(|row| !row.is_known()) {
+            return None;
+        }
         let percent = rounded(100.0 * most, 2);
         Some(format!("first derivatives are off by up to {percent} % of the largest change: take a smaller amplitude"))
     }
@@ -132,7 +152,10 @@ impl FormError {
             let values = [row.nominal, row.median, row.percentile_95, row.worst].map(Value::from);
             let rest = [
                 row.kept.map_or(Value::Missing, |share| percent(share).into()),
-                row.allowed.map_or(Value::Missing, |allowed| allowed.words().into()),
+                row.allowed.map_or(Value::Missing, |allowed| match row.is_known() {
+                    true => allowed.words().into(),
+                    false => "not known".to_owned().into(),
+                }),
                 row.worst_state.into(),
                 row.model_error.map_or(Value::Missing, |share| percent(share).into()),
             ];

@@ -23,9 +23,10 @@ use nonsmooth::{Accuracy, StateSolver, Vector};
 const STATES: usize = 20;
 
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
-    let (arguments, case) = (session.arguments, &loaded.case);
+    let arguments = session.arguments;
     let options = &arguments.tolerance;
     let run = options.run.as_ref().map(|folder| KeptRun::open(folder, loaded)).transpose()?;
+    let case = run.as_ref().and_then(|run| run.on_last_mesh.as_ref()).unwrap_or(&loaded.case);
     let (controls, shape) = match &run {
         Some(run) => run.shape(None).map(|(controls, origin)| (controls, origin.source))?,
         None => {

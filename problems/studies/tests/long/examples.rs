@@ -4,6 +4,7 @@ use problems::commands::{Arguments, execute};
 use scene_file::SceneFile;
 use serde_json::Value;
 use std::path::Path;
+use testset::kit::facts::fact;
 
 /// Relative difference allowed for the objective; the run may end elsewhere on other processors.
 const OBJECTIVE: f64 = 1e-3;
@@ -31,14 +32,20 @@ fn reaches(scene: &str, objective: f64, most_evaluations: u64) {
     assert!(run["evaluations"].as_u64() <= Some(most_evaluations), "{scene}: {}", run["evaluations"]);
 }
 
-/// The page states a tolerance of a hundredth.
+/// The page states a tolerance of a hundredth, and its numbers are shared ones.
 #[test]
 fn the_seat_of_the_bracket_is_confirmed() {
     let run = optimized("bracket");
     let found = run["objective"].as_f64().unwrap();
     // Another path may end a little lower or higher.
     assert!(found < 4.5e8 && run["objective_start"].as_f64() > Some(9.1e10), "{found}");
-    assert!(run["evaluations"].as_u64() <= Some(40), "{}", run["evaluations"]);
+    assert!(run["evaluations"].as_f64() <= Some(2.0 * fact("bracket: evaluations")), "{}", run["evaluations"]);
+    let peaks = [
+        fact("bracket: peak pressure of the start, MPa, four digits"),
+        fact("bracket: peak pressure of the optimum, MPa"),
+    ];
+    let found = [0, 1].map(|end| run["peak_pressure"][end].as_f64().unwrap());
+    assert!((found[0] / peaks[0] - 1.0).abs() < 1e-3 && (found[1] / peaks[1] - 1.0).abs() < 0.08, "{found:?}");
 }
 
 #[test]
