@@ -6,15 +6,12 @@ use std::process::Command;
 use testset::kit::{self, pages};
 
 /// Commands around the build that no test can run (a test runs inside one of them).
-const AROUND_THE_BUILD: [&str; 8] = [
-    "rustc --version",
+const AROUND_THE_BUILD: [&str; 5] = [
     "cargo fetch --locked",
-    "cargo build --release --locked",
     "cargo install --locked --path problems",
     "cargo build --release --locked --offline",
     "cargo package -p nonsmooth -p nonsmooth-contact -p nonsmooth-exchange -p nonsmooth-figures -p nonsmooth-scene-file -p problems --locked",
     "bash problems/mpi/build.sh",
-    "cargo doc --no-deps --locked --open",
 ];
 
 /// The built example, beside this test's folder; built now if the test was built alone.

@@ -66,7 +66,7 @@ fn short(value: f64, digits: usize) -> String {
 }
 
 /// Values of Θ whose price in evaluations docs/measurements.md states for Examples 5.1 and 5.2, as printed there.
-pub const LEVELS: [&str; 2] = ["1.4835e16", "1.8272e16"];
+const LEVELS: [&str; 2] = ["1.4835e16", "1.8272e16"];
 
 /// The line of an optimization in docs/measurements.md: Example 5.1 (0) or 5.2 (1) on 12³ bricks per body.
 pub fn optimization_line(example: usize) -> Result<String, Failure> {

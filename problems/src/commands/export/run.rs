@@ -97,20 +97,20 @@ impl KeptRun {
         let of_surface =
             differences(&own, loaded, |field| is_below(field, &SURFACES) && !is_below(field, &NO_SURFACE))?;
         // Of a coarse-to-fine optimization, each of its meshes.
-        let other_files = || {
+        let other_mesh = || {
             let first = other_files(&own.case.scene, &loaded.case.scene)?;
             let other = |stage: &PlannedRun| other_files(&stage.case.scene, &loaded.case.scene).is_some();
             stages(&own.case).iter().all(other).then_some(first)
         };
-        if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(other_files) {
+        if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(other_mesh) {
             let [scene, run] = [&path, folder].map(|path| quoted(path.display().to_string()));
             let hint = format!("take its own scene: contact3d {scene} export --run {run} --out DIR2");
             return refused(format!("is a run of another surface: {difference}; {hint}"));
         }
         let counts = |field: &str| !is_below(field, &NO_FRICTION_PROBLEM) && !is_below(field, &NO_SURFACE);
+        let is_own = differences(&own, loaded, |field| !is_below(field, &SETTINGS))?.is_empty()
+            && other_files(&own.case.scene, &loaded.case.scene).is_none();
         let mut differences = differences(&own, loaded, counts)?;
-        let is_own = self::differences(&own, loaded, |field| !is_below(field, &SETTINGS))?.is_empty()
-            && self::other_files(&own.case.scene, &loaded.case.scene).is_none();
         let own = own.case;
         let last = last(&own, root, folder);
         differences.extend(other_bricks(&last.scene, &loaded.case.scene));

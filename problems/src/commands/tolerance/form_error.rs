@@ -22,7 +22,7 @@ pub const SHARE: f64 = 0.95;
 /// Model error from which on the result is rough.
 const LARGEST_MODEL_ERROR: f64 = 0.2;
 /// Model error from which first derivatives say nothing of the changes.
-const MEANINGLESS_MODEL_ERROR: f64 = 0.5;
+pub const MEANINGLESS_MODEL_ERROR: f64 = 0.5;
 /// Largest multiple of the amplitude that is looked at.
 pub const LARGEST_TIMES: f64 = 10.0;
 
@@ -47,7 +47,9 @@ pub struct Row {
     pub worst: f64,
     /// Share of the shapes that keep the limit; none for what is no limit.
     pub kept: Option<f64>,
-    /// None for a quantity that is only told.
+    /// Whether it decides what is allowed: limits of states, and the objective or its root.
+    pub decides: bool,
+    /// None for a quantity that does not decide, and where first derivatives say nothing.
     pub allowed: Option<Allowed>,
     /// The worst of the shapes that were solved.
     pub worst_state: f64,
@@ -69,14 +71,15 @@ pub struct FormError {
     /// Number of shapes that were solved.
     pub states: usize,
     pub rows: Vec<Row>,
-    /// Amplitude up to which 95 % of the shapes keep the limits and lose at most 5 % of the objective.
-    pub allowed: Allowed,
+    /// Amplitude up to which 95 % of the shapes keep the limits and lose at most 5 % of the objective; none where it is
+    /// not known for a row that decides.
+    pub allowed: Option<Allowed>,
 }
 
 impl Row {
-    /// Whether first derivatives say anything of what is allowed.
-    fn is_known(&self) -> bool {
-        self.allowed.is_none() || self.model_error.is_none_or(|error| error <= MEANINGLESS_MODEL_ERROR)
+    /// Whether first derivatives say what is allowed, where it decides.
+    pub fn is_known(&self) -> bool {
+        !self.decides || self.allowed.is_some()
     }
 }
 
@@ -90,24 +93,23 @@ impl Allowed {
 impl FormError {
     /// What an engineer asks: how good the shape must be made.
     pub fn verdict(&self) -> String {
-        if let Some(unknown) = self.rows.iter().find(|row| !row.is_known()) {
-            let percent = rounded(100.0 * unknown.model_error.unwrap_or(f64::NAN), 2);
+        let Some(allowed) = self.allowed else {
+            let unknown: Vec<&str> =
+                self.rows.iter().filter(|row| !row.is_known()).map(|row| &row.quantity[..]).collect();
             return format!(
-                "what is allowed is not known: for {}, first derivatives are off by {percent} % of the largest change; take a \
-                 smaller amplitude, or judge by the worst states",
-                unknown.quantity
+                "what is allowed is not known: first derivatives say too little of {}; judge by the worst states",
+                unknown.join(", ")
             );
-        }
+        };
         let least = |row: &&Row| row.allowed.map_or(f64::INFINITY, |allowed| allowed.amplitude);
         let decisive = self.rows.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
         let name = decisive.map_or("", |row| row.quantity.as_str());
-        if self.allowed.amplitude == 0.0 {
+        if allowed.amplitude == 0.0 {
             return format!("no form error is allowed: without one, no room is left by {name}");
         }
-        let (allowed, what) =
-            (self.allowed.words(), "95 % of the shapes keep the limits and lose at most 5 % of the objective");
-        let by = if self.allowed.or_more { String::new() } else { format!(" (decided by {name})") };
-        format!("up to a form error of {allowed} mm, {what}{by}")
+        let what = "95 % of the shapes keep the limits and lose at most 5 % of the objective";
+        let by = if allowed.or_more { String::new() } else { format!(" (decided by {name})") };
+        format!("up to a form error of {} mm, {what}{by}", allowed.words())
     }
 
     /// What is allowed, in sentences.
@@ -126,11 +128,8 @@ impl FormError {
 
     /// What is to be said where first derivatives say little.
     fn caution(&self) -> Option<String> {
-        let errors = self.rows.iter().filter(|row| row.allowed.is_some()).filter_map(|row| row.model_error);
+        let errors = self.rows.iter().filter(|row| row.decides).filter_map(|row| row.model_error);
         let most = Some(errors.fold(0.0, f64::max)).filter(|most| *most > LARGEST_MODEL_ERROR)?;
-        if self.rows.iter().any(|row| !row.is_known()) {
-            return None;
-        }
         let percent = rounded(100.0 * most, 2);
         Some(format!("first derivatives are off by up to {percent} % of the largest change: take a smaller amplitude"))
     }
@@ -152,10 +151,11 @@ impl FormError {
             let values = [row.nominal, row.median, row.percentile_95, row.worst].map(Value::from);
             let rest = [
                 row.kept.map_or(Value::Missing, |share| percent(share).into()),
-                row.allowed.map_or(Value::Missing, |allowed| match row.is_known() {
-                    true => allowed.words().into(),
-                    false => "not known".to_owned().into(),
-                }),
+                match row.allowed {
+                    Some(allowed) => allowed.words().into(),
+                    None if row.decides => "not known".to_owned().into(),
+                    None => Value::Missing,
+                },
                 row.worst_state.into(),
                 row.model_error.map_or(Value::Missing, |share| percent(share).into()),
             ];

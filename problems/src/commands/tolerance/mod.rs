@@ -12,7 +12,7 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::solved_shape::ContactObjective;
-use crate::commands::tolerance::form_error::{FORM_ERROR, FormError};
+use crate::commands::tolerance::form_error::{FORM_ERROR, FormError, Row};
 use crate::commands::tolerance::random_shapes::random_shapes;
 use crate::commands::tolerance::statistics::Measures;
 use contact::equilibrium::{ContactProblem, FormErrors};
@@ -82,6 +82,8 @@ fn form_error(
     };
     let chosen = measures.chosen(&rated, STATES);
     let solved = chosen.into_iter().map(solve).collect::<Result<Vec<_>, Failure>>()?;
+    let rows = measures.rows(&rated, options.amplitude, &solved);
+    let allowed = rows.iter().all(Row::is_known).then(|| rated.allowed(options.amplitude));
     Ok(FormError {
         scene: problem.scene.name.clone(),
         shape,
@@ -91,7 +93,7 @@ fn form_error(
         samples: options.samples,
         seed: options.seed,
         states: solved.len(),
-        rows: measures.rows(&rated, options.amplitude, &solved),
-        allowed: rated.allowed(options.amplitude),
+        rows,
+        allowed,
     })
 }

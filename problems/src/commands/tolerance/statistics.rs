@@ -4,7 +4,7 @@
 use crate::commands::limited_value::LimitedValue;
 use crate::commands::numbers::raised;
 use crate::commands::solved_shape::ContactObjective;
-use crate::commands::tolerance::form_error::{Allowed, LARGEST_TIMES, LOSS, Row, SHARE};
+use crate::commands::tolerance::form_error::{Allowed, LARGEST_TIMES, LOSS, MEANINGLESS_MODEL_ERROR, Row, SHARE};
 use contact::cost::{Limit, LimitSide};
 use contact::load_cases::CaseStates;
 use contact::{FirstOrderModel, Predicted};
@@ -164,6 +164,8 @@ impl<'o> Measures<'o> {
             let differences = states.iter().map(|(shape, values)| (rated.values[*shape][row] - values[row]).abs());
             let difference = differences.fold(0.0, f64::max);
             let worst_state = solved.reduce(|a, b| if self.badness(row, b) > self.badness(row, a) { b } else { a });
+            let model_error = (change > 0.0).then_some(difference / change);
+            let is_known = model_error.is_none_or(|error| error <= MEANINGLESS_MODEL_ERROR);
             Row {
                 quantity,
                 unit,
@@ -172,9 +174,11 @@ impl<'o> Measures<'o> {
                 percentile_95: at(rank(SHARE)),
                 worst: at(count - 1),
                 kept: limit.filter(|limit| limit.side != LimitSide::Equal).map(kept),
-                allowed: self.decides(row).then(|| allowed(rated.times.iter().map(|times| times[row]), amplitude)),
+                decides: self.decides(row),
+                allowed: (self.decides(row) && is_known)
+                    .then(|| allowed(rated.times.iter().map(|times| times[row]), amplitude)),
                 worst_state: worst_state.unwrap_or(self.nominal[row]),
-                model_error: (change > 0.0).then_some(difference / change),
+                model_error,
             }
         };
         self.all.iter().enumerate().map(row).collect()
